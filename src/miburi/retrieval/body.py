@@ -1,0 +1,135 @@
+"""The 42 values of a frame: where thirteen joints are in a body-centred frame, and how the trunk is turned ([P])."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from miburi.errors import InputError
+from miburi.figures import BODY_JOINTS, PERSON
+from miburi.kinematics import trunk_frame, unit, yaw_pitch_roll
+from miburi.motion import Floats, Motion
+
+WIDTH = 3 * len(BODY_JOINTS) + 3
+YAW = 3 * len(BODY_JOINTS)
+"""Column of the yaw; pitch and roll follow."""
+
+# Parent → child, as on the puppet: what lies between two of these joints (spine, clavicles) is one bone.
+_BONES = tuple((PERSON.joints[p], PERSON.joints[j]) for j, p in enumerate(PERSON.parents) if p >= 0)
+
+
+def names() -> list[str]:
+    """Names of the 42 columns: `{joint}_x`, `_y`, `_z` of the thirteen joints, then yaw, pitch, roll."""
+    return [f"{joint}_{axis}" for joint in BODY_JOINTS for axis in "xyz"] + ["yaw", "pitch", "roll"]
+
+
+def _on_person(places: dict[str, Floats], frame: Floats) -> dict[str, Floats]:
+    """The places, in the trunk's frame, of PERSON's joints when its bones point as those of the person recorded."""
+    mapped = {"waist": np.zeros((len(frame), 3))}
+    for parent, child in _BONES:
+        offset = PERSON.offsets[PERSON.index(child)]
+        length = float(np.linalg.norm(offset))
+        bone = np.einsum("tba,tb->ta", frame, places[child] - places[parent])
+        # two joints on one spot have no direction: PERSON's own then
+        mapped[child] = mapped[parent] + length * unit(bone, fallback=offset / length)
+    return mapped
+
+
+def features(
+    motion: Motion, joints: Mapping[str, str] | None = None, *, angle_weight: float = 0.3, mapped: bool = True
+) -> NDArray[np.float32]:
+    """The 42 values of each frame.
+
+    Parameters
+    ----------
+    motion
+        A person or a puppet.
+    joints
+        Canonical name (`waist` or one of `figures.BODY_JOINTS`) → name in this skeleton, where the tables of naming
+        conventions do not know it.
+    angle_weight
+        Metres that one radian of the trunk's angles counts.
+    mapped
+        Bones keep their directions but take the lengths of `figures.PERSON`, so that people of all sizes and the
+        puppet are one figure; False: everybody's own skeleton.
+
+    Returns
+    -------
+    (T, 42) float32
+        Metres: x (to the person's left), y (up the trunk), z (forward) from the waist of the 13 joints of
+        `figures.BODY_JOINTS`; then yaw, pitch and roll of the trunk times `angle_weight`. Yaw is counted from the
+        first frame and continuous. `names` lists the columns.
+
+    Raises
+    ------
+    InputError
+        The skeleton lacks a joint, or `angle_weight` is not positive.
+
+    Notes
+    -----
+    [P], section on preprocessing. With pitch near ±90° (lying) yaw and roll are not separately defined, as on any
+    device that reports these angles.
+    """
+    if not (np.isfinite(angle_weight) and angle_weight > 0):
+        raise InputError(f"angle_weight is {angle_weight}, expected a positive number of metres per radian")
+    from miburi.conventions import find_joints
+
+    where = find_joints(motion.skeleton, joints)
+    if len(motion) == 0:
+        return np.zeros((0, WIDTH), dtype=np.float32)
+    positions = motion.positions()
+    places = {name: positions[:, where[name]] for name in ("waist", *BODY_JOINTS)}
+    frame = trunk_frame(places["l_hip"], places["r_hip"], places["waist"], places["neck"])
+    if mapped:
+        body = _on_person(places, frame)
+    else:
+        body = {n: np.einsum("tba,tb->ta", frame, places[n] - places["waist"]) for n in BODY_JOINTS}
+    x = np.empty((len(motion), WIDTH), dtype=np.float32)
+    for k, name in enumerate(BODY_JOINTS):
+        x[:, 3 * k : 3 * k + 3] = body[name]
+    angles = yaw_pitch_roll(frame)
+    angles[:, 0] -= angles[0, 0]
+    x[:, YAW:] = angle_weight * angles
+    return x
+
+
+def reset_yaw(x: ArrayLike, pieces: ArrayLike | None = None) -> NDArray[np.float32]:
+    """Count the yaw of each piece from the piece's own mean.
+
+    A puppet knows no north, and a person may perform the same motion in any direction. The mean is used, not the
+    first frame, because a piece may begin a little earlier or later and its first frame is one noisy value, while a
+    turn of the same size has the same shape about its mean. A query is one piece and gets the same treatment.
+
+    Parameters
+    ----------
+    x : (T, 42)
+        Features.
+    pieces : (S, 2), optional
+        Start (inclusive) and end (exclusive) of pieces that do not overlap; absent: all of `x` is one piece.
+
+    Returns
+    -------
+    (T, 42) float32
+        A copy; frames outside all pieces are as they were.
+
+    Raises
+    ------
+    InputError
+        A piece is empty, reaches outside the frames or overlaps another.
+    """
+    out = np.array(x, dtype=np.float32)
+    if out.ndim != 2 or out.shape[1] != WIDTH:
+        raise InputError(f"features have shape {out.shape}, expected any × {WIDTH}")
+    spans = np.array([[0, len(out)]] if pieces is None else pieces, dtype=np.int64).reshape(-1, 2)
+    if pieces is None and len(out) == 0:
+        return out
+    order = spans[np.argsort(spans[:, 0], kind="stable")]
+    if len(order) and (
+        order[0, 0] < 0 or order[-1, 1] > len(out) or (order[:, 0] >= order[:, 1]).any() or (order[1:, 0] < order[:-1, 1]).any()
+    ):
+        raise InputError(f"pieces must be non-empty, apart and inside the {len(out)} frames")
+    for start, end in order:
+        out[start:end, YAW] -= out[start:end, YAW].mean(dtype=np.float64)
+    return out

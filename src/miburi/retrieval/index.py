@@ -1,0 +1,344 @@
+"""The index of segments and the ranking of its segments for a query ([P])."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from miburi import store
+from miburi.errors import InputError
+from miburi.motion import Floats
+from miburi.retrieval import subspace
+from miburi.retrieval.jvh import bhattacharyya, jvh
+
+_PLAIN = ("mean pose", "SM(PCA)", "MSM", "DSPM(PCA)")
+_MEASURES = (*_PLAIN, *(f"{name}+Jvh" for name in _PLAIN[1:]))
+
+
+def measures() -> tuple[str, ...]:
+    """Names of the measures that `Index.rank` knows. All are distances: smaller is nearer."""
+    return _MEASURES
+
+
+@dataclass(frozen=True, eq=False)
+class Ranking:
+    """Segments by their distance from a query.
+
+    Parameters
+    ----------
+    order : (k,) int64
+        Indices of segments, nearest first; equal distances by index.
+    score : (k,) float64
+        Distance of segment `order[i]`; smaller is nearer.
+    """
+
+    order: NDArray[np.int64]
+    score: Floats
+
+    def __len__(self) -> int:
+        return len(self.order)
+
+
+def ranking(score: ArrayLike, k: int | None = None) -> Ranking:
+    """The k smallest of the segments' distances (all, if k is None), equal ones by index.
+
+    Raises
+    ------
+    InputError
+        k is less than 1.
+    """
+    values = np.asarray(score, dtype=np.float64)
+    if k is not None and k < 1:
+        raise InputError(f"the first {k} segments are wanted, expected at least 1")
+    if k is None or k >= len(values):
+        order = np.argsort(values, kind="stable")
+    else:
+        # all that are no worse than the k-th, so that ties at the limit are decided by index too
+        near = np.flatnonzero(values <= np.partition(values, k - 1)[k - 1])
+        order = near[np.argsort(values[near], kind="stable")][:k]
+    return Ranking(order.astype(np.int64), values[order])
+
+
+def merge(rankings: Sequence[Ranking], sizes: Sequence[int], k: int | None = None) -> Ranking:
+    """One ranking of several indices that lie one after the other (shards).
+
+    Parameters
+    ----------
+    rankings
+        One per shard, each of at least its first k.
+    sizes
+        Number of segments of each shard.
+    k
+        How many to keep; None: all that are there.
+    """
+    shift = np.concatenate([[0], np.cumsum(sizes)])[:-1]
+    order = np.concatenate([r.order + s for r, s in zip(rankings, shift, strict=True)])
+    score = np.concatenate([r.score for r in rankings])
+    best = np.lexsort((order, score))[: len(order) if k is None else k]
+    return Ranking(order[best].astype(np.int64), score[best])
+
+
+def _draw(x: Floats, samples: int | None, *name: object) -> Floats:
+    """K frames at random without repeats, in time's order; all of them, evenly repeated, where there are fewer."""
+    n = len(x)
+    if samples is None:
+        return x
+    if n <= samples:
+        # copies change no maximum and keep the samples of all segments in one array
+        return x[np.arange(samples) * n // samples]
+    return x[np.sort(store.seed(*name).choice(n, samples, replace=False))]
+
+
+def _checked(x: ArrayLike, width: int | None, what: str) -> Floats:
+    frames = np.asarray(x, dtype=np.float64)
+    if frames.ndim != 2 or (width is not None and frames.shape[1] != width):
+        raise InputError(f"{what} has shape {frames.shape}, expected frames × {width or 'values'}")
+    if len(frames) == 0:
+        raise InputError(f"{what} has no frames")
+    if not np.isfinite(frames).all():
+        raise InputError(f"{what}, frame {int(np.argwhere(~np.isfinite(frames))[0][0])}: a number is not finite")
+    return frames
+
+
+@dataclass(frozen=True, eq=False)
+class Index:
+    """Segments ready to be ranked; made by `build` or read by `open`.
+
+    Parameters
+    ----------
+    take, start, end
+        S segments: name of the take, first frame and the frame after the last.
+    mean : (S, D) float64
+    basis : (S, dims, D) float64
+        Principal directions of each segment (`subspace.fit`); rows of zeros where it varies in fewer.
+    jvh : (S, D) float64
+        Histogram of movement.
+    frames : (N, D) float32
+        The frames drawn from each segment, end to end.
+    offsets : (S + 1,) int64
+        First of a segment's rows in `frames`.
+    samples
+        Frames drawn from each side (K); None: all.
+    seed
+        Seed of the draw.
+    """
+
+    take: tuple[str, ...]
+    start: NDArray[np.int64]
+    end: NDArray[np.int64]
+    mean: Floats
+    basis: Floats
+    jvh: Floats
+    frames: NDArray[np.float32]
+    offsets: NDArray[np.int64]
+    samples: int | None
+    seed: int
+
+    def __post_init__(self) -> None:
+        width = self.mean.shape[1]
+        blocks = [self.frames[a:b].T.ravel() for a, b in zip(self.offsets[:-1], self.offsets[1:], strict=True)]
+        # values before frames: the kernels' inner loop runs over frames that lie side by side
+        flat = np.concatenate(blocks).astype(np.float64) if blocks else np.zeros(0)
+        object.__setattr__(self, "_blocks", flat)
+        assert flat.size == width * int(self.offsets[-1])
+
+    def __len__(self) -> int:
+        return len(self.take)
+
+    @classmethod
+    def build(
+        cls,
+        features: Sequence[ArrayLike],
+        segments: Sequence[tuple[str, int, int, int]],
+        *,
+        dims: int = 5,
+        samples: int | None = 50,
+        seed: int = 0,
+    ) -> Index:
+        """Fit a subspace to each segment and draw its frames.
+
+        Parameters
+        ----------
+        features
+            (T, 42) arrays, one per take.
+        segments
+            Name of the take, its place in `features`, start (inclusive) and end (exclusive) frame.
+        dims
+            Dimensions of the subspaces.
+        samples
+            Frames drawn from each side (K of eq. 2); None: all frames.
+        seed
+            A segment's draw depends on this, its take's name, start and end alone, not on its neighbours.
+
+        Raises
+        ------
+        InputError
+            There are no segments, one is empty or reaches outside its take, or a number is not finite.
+        """
+        if dims < 1 or (samples is not None and samples < 1):
+            raise InputError(f"{dims} dimensions and {samples} samples, expected at least 1 of each")
+        if len(segments) == 0:
+            raise InputError("there are no segments to index")
+        width = np.shape(features[0])[-1]
+        takes = [_checked(x, width, f"features {i}") for i, x in enumerate(features)]
+        mean, basis, histogram, drawn = [], [], [], []
+        for name, i, start, end in segments:
+            if not (0 <= i < len(takes) and 0 <= start < end <= len(takes[i])):
+                raise InputError(f"take {name!r}: the segment from frame {start} to {end} is empty or outside the take")
+            x = takes[i][start:end]
+            m, b = subspace.fit(x, dims)
+            mean.append(m)
+            basis.append(b)
+            histogram.append(jvh(x))
+            drawn.append(_draw(x, samples, seed, name, start, end).astype(np.float32))
+        return cls(
+            tuple(s[0] for s in segments),
+            np.array([s[2] for s in segments], dtype=np.int64),
+            np.array([s[3] for s in segments], dtype=np.int64),
+            np.array(mean),
+            np.array(basis),
+            np.array(histogram),
+            np.concatenate(drawn),
+            np.concatenate([[0], np.cumsum([len(d) for d in drawn])]).astype(np.int64),
+            samples,
+            seed,
+        )
+
+    @property
+    def dims(self) -> int:
+        """Dimensions of the subspaces."""
+        return int(self.basis.shape[1])
+
+    def rank(self, x: ArrayLike, measure: str = "DSPM(PCA)", k: int | None = None, *, reduction: str = "max") -> Ranking:
+        """Rank the segments by their distance from a query.
+
+        Parameters
+        ----------
+        x : (T, 42)
+            Features of the query, T ≥ 1.
+        measure
+            One of `measures`.
+        k
+            How many to return; None: all.
+        reduction
+            How SM reduces over the query's frames, "max" or "mean" (not printed in [P]); other measures ignore it.
+
+        Returns
+        -------
+        Ranking
+            Nearest first. The same query gives the same ranking: its frames are drawn by a seed from its content.
+
+        Raises
+        ------
+        InputError
+            The query is empty, too narrow or wide, or not finite; the measure is unknown; k is less than 1.
+        """
+        return ranking(self.distances(x, measure, reduction=reduction), k)
+
+    def distances(self, x: ArrayLike, measure: str = "DSPM(PCA)", *, reduction: str = "max") -> Floats:
+        """Distance of each segment from a query, (S,) float64; parameters and errors as `rank`.
+
+        Notes
+        -----
+        DSPM
+            D(Q, H) = max(max_n Err(H, x_n), max_n Err(Q, x^H_n)), metres ([P], eq. 2).
+        SM
+            max_n Err(H, x_n), metres (eq. 1): the segment's subspace and the query's frames.
+        MSM
+            1 − Σ cos² θ_i / M over the canonical angles θ_i of the two subspaces, M the number of dimensions in
+            which the query varies: the mean of all angles, because the first alone is near 0 for most pairs of body
+            motions. 0: the query's subspace lies within the segment's.
+        mean pose
+            Distance of the two means, metres. A naive measure, to compare with.
+        …+Jvh
+            The distance times (2 − B), B the Bhattacharyya coefficient of the histograms of movement (eqs. 3, 4);
+            [P] does not print its rule.
+        """
+        if measure not in _MEASURES:
+            raise InputError(f"there is no measure {measure!r}; there are {', '.join(_MEASURES)}")
+        if reduction not in ("max", "mean"):
+            raise InputError(f"reduction is {reduction!r}, expected 'max' or 'mean'")
+        query = _checked(x, self.mean.shape[1], "the query")
+        plain = measure.removesuffix("+Jvh")
+        if plain == "mean pose":
+            distance: Floats = np.sqrt(np.square(self.mean - query.mean(axis=0)).sum(axis=1))
+        else:
+            distance = self._subspace_distances(query, plain, reduction == "mean")
+        if measure.endswith("+Jvh"):
+            distance = distance * (2.0 - bhattacharyya(self.jvh, jvh(query)))
+        return distance
+
+    def _subspace_distances(self, query: Floats, measure: str, mean_not_max: bool) -> Floats:
+        mean, basis = subspace.fit(query, self.dims)
+        if measure == "MSM":
+            rank = int(basis.any(axis=1).sum())
+            # a query that stands still has no subspace: all segments are equally far
+            return np.maximum(1.0 - subspace.shared(self.basis, basis) / rank, 0.0) if rank else np.ones(len(self))
+        content = hashlib.sha256(np.ascontiguousarray(query).tobytes()).hexdigest()
+        block = np.ascontiguousarray(_draw(query, self.samples, self.seed, "query", content).T)
+        to: Floats = subspace.frames_to_subspaces(block, self.mean, self.basis, mean_not_max and measure == "SM(PCA)")
+        if measure == "SM(PCA)":
+            return to
+        back: Floats = subspace.samples_to_subspace(self._blocks, self.offsets, mean, basis)  # type: ignore[attr-defined]
+        return np.maximum(to, back)
+
+    def save(self, path: str | os.PathLike[str], sources: Mapping[str, str] | None = None) -> None:
+        """Write the index ("miburi/index"), with the digests of what it was made from.
+
+        `samples` is (S, K, D); with all frames kept it is (N, D) and `offsets` (S + 1) says where segments begin.
+        """
+        with store.create(path, "index", sources) as file:
+            store.put(file, "take", list(self.take))
+            for name in ("start", "end", "mean", "basis", "jvh"):
+                store.put(file, name, getattr(self, name))
+            if self.samples is None:
+                store.put(file, "samples", self.frames)
+                store.put(file, "offsets", self.offsets)
+            else:
+                store.put(file, "samples", self.frames.reshape(len(self), self.samples, -1))
+            file.attrs["dims"] = self.dims
+            file.attrs["samples"] = 0 if self.samples is None else self.samples
+            file.attrs["seed"] = self.seed
+
+    @classmethod
+    def open(cls, path: str | os.PathLike[str]) -> Index:
+        """Read an index that `save` wrote.
+
+        Raises
+        ------
+        InputError
+            The file is missing, damaged or not an index, or its arrays do not fit together.
+        """
+        with store.open_checked(path, "index") as file:
+            try:
+                dims, samples, seed = (int(file.attrs[a]) for a in ("dims", "samples", "seed"))
+            except KeyError:
+                raise InputError(f"{path}: an attribute is missing, expected dims, samples and seed") from None
+            take = store.get_strings(file, "take")
+            s = len(take)
+            mean = store.get(file, "mean", (s, None))
+            width = mean.shape[1]
+            if samples:
+                frames = store.get(file, "samples", (s, samples, width)).reshape(-1, width)
+                offsets = np.arange(s + 1, dtype=np.int64) * samples
+            else:
+                frames, offsets = store.get(file, "samples", (None, width)), store.get(file, "offsets", (s + 1,))
+                if offsets[0] != 0 or offsets[-1] != len(frames) or (np.diff(offsets) < 1).any():
+                    raise InputError(f"{path}: /offsets do not cut the {len(frames)} frames into {s} segments")
+            return cls(
+                tuple(take),
+                store.get(file, "start", (s,)),
+                store.get(file, "end", (s,)),
+                mean,
+                store.get(file, "basis", (s, dims, width)),
+                store.get(file, "jvh", (s, width)),
+                frames,
+                offsets,
+                samples or None,
+                seed,
+            )

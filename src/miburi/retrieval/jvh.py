@@ -1,0 +1,50 @@
+"""How much each value moves: the histogram Jvh of [P], eqs. (3) and (4)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from miburi.motion import Floats
+
+
+def jvh(x: ArrayLike) -> Floats:
+    """How far each value travels, as shares of the whole.
+
+    Parameters
+    ----------
+    x : (T, D)
+        Features of a segment.
+
+    Returns
+    -------
+    (D,) float64
+        Σ_n |x^k_{n+1} − x^k_n| for each k ([P], eq. 3), divided by their sum; zeros where nothing moves.
+    """
+    travelled = np.abs(np.diff(np.asarray(x, dtype=np.float64), axis=0)).sum(axis=0)
+    total = travelled.sum()
+    return travelled / total if total > 0 else np.zeros_like(travelled)
+
+
+def bhattacharyya(p: ArrayLike, q: ArrayLike) -> Floats:
+    """How alike histograms are.
+
+    Parameters
+    ----------
+    p : (S, D)
+        Histograms, each of sum 1 (or all zeros: nothing moves).
+    q : (D,)
+        A histogram of the same kind.
+
+    Returns
+    -------
+    (S,) float64
+        Σ_i √(p_i q_i), 0 to 1 ([P], eq. 4, whose print leaves q_i outside the root). Two that do not move at all
+        are alike: 1.
+    """
+    a, b = np.asarray(p, dtype=np.float64), np.asarray(q, dtype=np.float64)
+    # products are summed in the same order for every row, so that equal histograms get equal bits
+    similar = np.minimum((np.sqrt(a) * np.sqrt(b)).sum(axis=1), 1.0)
+    if not b.any():
+        similar = np.where(a.any(axis=1), 0.0, 1.0)
+    return similar
