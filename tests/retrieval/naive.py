@@ -1,0 +1,41 @@
+"""The equations of [P] written out, with their loops: what the kernels must equal."""
+
+import numpy as np
+
+
+def subspace(x, dims):
+    """Mean and principal directions by a singular value decomposition; as many as the frames vary in."""
+    mean = x.mean(axis=0)
+    _, s, v = np.linalg.svd(x - mean, full_matrices=False)
+    rank = int(np.sum(s / np.sqrt(len(x)) > 1e-6))
+    return mean, v[: min(dims, rank)]
+
+
+def err(mean, basis, x):
+    """Eq. (1)."""
+    return np.linalg.norm(x - (basis.T @ (basis @ (x - mean)) + mean))
+
+
+def sm(segment, query, dims, reduction=max):
+    mean, basis = subspace(segment, dims)
+    return reduction([err(mean, basis, x) for x in query])
+
+
+def dspm(segment, query, dims, segment_frames, query_frames):
+    """Eq. (2) over the frames drawn from each side."""
+    h, q = subspace(segment, dims), subspace(query, dims)
+    return max(max(err(*h, x) for x in query_frames), max(err(*q, x) for x in segment_frames))
+
+
+def histogram(x):
+    """Eq. (3), normalised."""
+    path = np.zeros(x.shape[1])
+    for n in range(len(x) - 1):
+        for k in range(x.shape[1]):
+            path[k] += abs(x[n + 1, k] - x[n, k])
+    return path / path.sum() if path.sum() else path
+
+
+def coefficient(p, q):
+    """Eq. (4), the root over both factors."""
+    return sum(np.sqrt(a * b) for a, b in zip(p, q, strict=True))
