@@ -102,10 +102,10 @@ def test_mean_pose_is_the_distance_of_the_means(features, segments, query, index
 
 
 @pytest.mark.parametrize("measure", ["DSPM(PCA)", "SM(PCA)", "MSM"])
-def test_jvh_multiplies_by_two_minus_the_coefficient(features, segments, query, index, measure):
+def test_jvh_multiplies_by_the_hellinger_distance(features, segments, query, index, measure):
     plain, with_jvh = index.distances(query, measure), index.distances(query, measure + "+Jvh")
     b = [naive.coefficient(naive.histogram(frames_of(features, s)), naive.histogram(query)) for s in segments]
-    np.testing.assert_allclose(with_jvh, plain * (2 - np.array(b)), rtol=1e-6)
+    np.testing.assert_allclose(with_jvh, plain * np.sqrt(1 - np.array(b)), rtol=1e-6)
 
 
 def test_coefficient_of_equal_histograms_is_one_and_of_disjoint_ones_zero():
