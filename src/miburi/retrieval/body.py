@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from miburi.conventions import find_joints
 from miburi.errors import InputError
 from miburi.figures import BODY_JOINTS, PERSON
 from miburi.kinematics import trunk_frame, unit, yaw_pitch_roll
@@ -74,8 +75,6 @@ def features(
     """
     if not (np.isfinite(angle_weight) and angle_weight > 0):
         raise InputError(f"angle_weight is {angle_weight}, expected a positive number of metres per radian")
-    from miburi.conventions import find_joints
-
     where = find_joints(motion.skeleton, joints)
     if len(motion) == 0:
         return np.zeros((0, WIDTH), dtype=np.float32)

@@ -7,15 +7,16 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
 
+from miburi.conventions import find_joints
 from miburi.errors import InputError
 from miburi.figures import BODY_JOINTS
-from miburi.kinematics import matrices, quaternions
 from miburi.motion import Floats, Motion
 
-# Variance of a quaternion component below which nothing counts as motion: (0.01)² is about one degree. Without it a
+# Variance of a quaternion component below which nothing counts as motion: (0.016)² is about two degrees. Without it a
 # person who stands still is a model that every later frame leaves at once.
-_NOISE = 1e-4
+_NOISE = 2.5e-4
 
 Cuts = NDArray[np.int64]
 
@@ -34,37 +35,41 @@ def pose(motion: Motion, joints: Mapping[str, str] | None = None) -> Floats:
     -------
     (T, 4 M) float64
         Quaternions, continuous in sign, of the M joints whose rotation moves one of `figures.BODY_JOINTS` (so no
-        wrists, fingers, ankles or head) and that turn at all; the root's is freed of its yaw.
+        wrists, fingers, ankles or head) and that turn at all. What lies at or above the waist counts as one,
+        freed of its yaw.
     """
-    from miburi.conventions import find_joints
-
+    if len(motion) == 0:
+        return np.zeros((0, 0))
     skeleton = motion.skeleton
     found = find_joints(skeleton, joints)
-    moves = np.zeros(len(skeleton), dtype=bool)
-    for name in BODY_JOINTS:
-        j = int(skeleton.parents[found[name]])
-        while j >= 0:
-            moves[j] = True
-            j = int(skeleton.parents[j])
-    q = np.array(motion.rotations)
-    if len(q) == 0:
-        return np.zeros((0, 0))
-    q[:, 0] = _without_yaw(q[:, 0])
+    above = _line(skeleton.parents, found["waist"])
+    moves = {j for name in BODY_JOINTS for j in _line(skeleton.parents, found[name])[1:]}.difference(above)
+    turn = Rotation.identity(len(motion))
+    for j in reversed(above):
+        turn = turn * Rotation.from_quat(motion.rotations[:, j])
+    q = np.concatenate([_tilt(turn)[:, None], motion.rotations[:, sorted(moves)]], axis=1)
     # q and −q are the same rotation: follow the one nearer to the frame before
-    flips = np.sign(np.einsum("tja,tja->tj", q[1:], q[:-1]))
-    q[1:] *= np.cumprod(np.where(flips < 0, -1.0, 1.0), axis=0)[..., None]
-    moves &= np.ptp(q, axis=0).max(axis=1) > 1e-9
-    return q[:, moves].reshape(len(q), -1)
+    flips = np.einsum("tja,tja->tj", q[1:], q[:-1]) < 0
+    q[1:] *= np.cumprod(np.where(flips, -1.0, 1.0), axis=0)[..., None]
+    return q[:, np.ptp(q, axis=0).max(axis=1) > 1e-9].reshape(len(q), -1)
 
 
-def _without_yaw(root: Floats) -> Floats:
-    """Rotations (T, 4) with the turn about the vertical taken off: what is left tilts the body."""
-    # swing-twist: the twist about y is (0, y, 0, w) made unit
-    twist = np.where([False, True, False, True], root, 0.0)
-    size = np.linalg.norm(twist, axis=1, keepdims=True)
-    twist = np.where(size > 1e-9, twist / np.maximum(size, 1e-9), [0.0, 0.0, 0.0, 1.0])
-    r = np.swapaxes(matrices(twist), 1, 2) @ matrices(root)
-    return quaternions(r)
+def _line(parents: NDArray[np.int32], joint: int) -> list[int]:
+    """A joint and all above it, up to the root."""
+    line = [joint]
+    while parents[line[-1]] >= 0:
+        line.append(int(parents[line[-1]]))
+    return line
+
+
+def _tilt(turn: Rotation) -> Floats:
+    """Quaternions (T, 4) of how the body has tilted since the first frame, seen from the body; turning about the
+    vertical is left out."""
+    since = (turn * turn[0].inv()).as_quat()
+    # swing-twist: the twist about y is (0, y, 0, w) made unit; half a turn about a level axis has none
+    twist = since * [0.0, 1.0, 0.0, 1.0]
+    twist[np.linalg.norm(twist, axis=1) < 1e-9] = [0.0, 0.0, 0.0, 1.0]
+    return (turn[0].inv() * Rotation.from_quat(twist).inv() * turn).as_quat()
 
 
 def ppca_curve(
@@ -138,10 +143,10 @@ def segment(
     *,
     method: Literal["PPCA", "PCA"] = "PPCA",
     variance: float = 0.95,
-    window_s: float = 2.0,
+    window_s: float = 1.5,
     ahead_s: float = 1.25,
     step_s: float = 1 / 12,
-    rise: float = 4.0,
+    rise: float = 5.0,
     joints: Mapping[str, str] | None = None,
 ) -> Cuts:
     """Frames at which a take is cut into single motions.
@@ -198,7 +203,7 @@ def segment(
     start = 0
     while True:
         if method == "PPCA":
-            cut = _next_cut(_growing(x, start, window, ahead, step, variance), rise, ahead // 2)
+            cut = _next_cut(_growing(x, start, window, ahead, step, variance), rise, ahead // 4)
         else:
             cut = _next_jump(x, start, window, step, variance)
         if cut is None:
