@@ -213,7 +213,7 @@ def segment(
 
 
 def _next_jump(x: Floats, start: int, window: int, step: int, variance: float) -> int | None:
-    """PCA variant: where the projection error's growth over half a window exceeds its mean by three deviations."""
+    """PCA variant (section 3.1): where the projection error's growth exceeds its mean by three deviations."""
     if start + 2 * window > len(x):
         return None
     first = x[start : start + window]
@@ -224,15 +224,16 @@ def _next_jump(x: Floats, start: int, window: int, step: int, variance: float) -
     centred = x[start:] - mean
     along = centred @ vectors[:, ::-1][:, :kept]
     error = np.cumsum((centred**2).sum(axis=1) - (along**2).sum(axis=1))
-    lag = max(1, window // 2)
-    growth = error[lag:] - error[:-lag]
-    # frame i of the piece has growth[i - lag]; mean and deviation over all frames before it, from the window's end on
+    lag = max(1, window // 3)
+    # growth over `lag` frames that end at or after the first window's end: inside it the error was minimised
+    growth = (error[lag:] - error[:-lag])[window - lag :]
     n = np.arange(1, len(growth) + 1)
     average = np.cumsum(growth) / n
     deviation = np.sqrt(np.maximum(np.cumsum(growth**2) / n - average**2, 0.0))
-    tested = np.arange(window - lag, len(growth), step)
+    # a mean and a deviation need as many frames as the subspace did
+    tested = np.arange(window, len(growth), step)
     jump = tested[growth[tested] > average[tested - 1] + 3.0 * deviation[tested - 1] + lag * _NOISE]
-    return int(start + lag + jump[0]) if len(jump) else None
+    return int(start + window + jump[0]) if len(jump) else None
 
 
 def pieces(cuts: ArrayLike, frames: int, shortest: int = 1) -> NDArray[np.int64]:
