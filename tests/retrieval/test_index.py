@@ -113,8 +113,8 @@ def test_coefficient_of_equal_histograms_is_one_and_of_disjoint_ones_zero():
     y = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 5.0]])
     still = np.zeros(3)
     np.testing.assert_allclose(jvh(x), [2 / 5, 3 / 5, 0])
-    np.testing.assert_allclose(bhattacharyya([jvh(x), jvh(y), still], jvh(x)), [1, 0, 0])
-    np.testing.assert_allclose(bhattacharyya([jvh(x), still], still), [0, 1])
+    np.testing.assert_allclose(bhattacharyya(np.sqrt([jvh(x), jvh(y), still]), jvh(x)), [1, 0, 0])
+    np.testing.assert_allclose(bhattacharyya(np.sqrt([jvh(x), still]), still), [0, 1])
 
 
 # ---- one battery for all measures
@@ -199,6 +199,27 @@ def test_a_query_in_the_same_place_is_nearer_to_dspm(features, segments, index):
     x = frames_of(features, segments[2])
     away = x + 1.0
     assert index.distances(away)[2] > index.distances(x)[2] + 0.5
+
+
+@given(st.integers(0, 10_000), st.integers(1, 12), st.sampled_from([None, 8]), st.sampled_from([0.0, 300.0]))
+def test_bounds_lose_none_of_the_first(seed, k, samples, far):
+    """Clusters of segments at very different distances, short and still ones, some far from the origin."""
+    rng = np.random.default_rng(seed)
+    centres = rng.normal(0, 10.0 ** rng.uniform(-3, 1), (4, 6)) + far
+    x, segments, at = [], [], 0
+    for _ in range(30):
+        n = int(rng.integers(1, 15))
+        moves = rng.normal(0, 10.0 ** rng.uniform(-4, 0), (n, 2)) @ rng.normal(size=(2, 6)) * rng.integers(0, 2)
+        x.append(centres[rng.integers(4)] + moves + rng.normal(0, 1e-3, (n, 6)) * rng.integers(0, 2))
+        segments.append(("a", 0, at, at + n))
+        at += n
+    frames = np.concatenate(x).astype(np.float32)
+    index = Index.build([frames], segments, dims=2, samples=samples)
+    query = x[rng.integers(30)] + rng.normal(0, 0.01, 6)
+    for measure in ("DSPM(PCA)", "DSPM(PCA)+Jvh"):
+        whole, some = index.rank(query, measure), index.rank(query, measure, k)
+        np.testing.assert_array_equal(some.order, whole.order[:k])
+        np.testing.assert_array_equal(some.score, whole.score[:k])
 
 
 # ---- fitting, drawing, ordering

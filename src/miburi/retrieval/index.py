@@ -6,6 +6,7 @@ import hashlib
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from miburi import store
 from miburi.errors import InputError
 from miburi.motion import Floats
-from miburi.retrieval import subspace
+from miburi.retrieval import nearest, subspace
 from miburi.retrieval.jvh import bhattacharyya, jvh
 
 _PLAIN = ("mean pose", "SM(PCA)", "MSM", "DSPM(PCA)")
@@ -139,13 +140,23 @@ class Index:
     samples: int | None
     seed: int
 
-    def __post_init__(self) -> None:
-        width = self.mean.shape[1]
-        blocks = [self.frames[a:b].T.ravel() for a, b in zip(self.offsets[:-1], self.offsets[1:], strict=True)]
+    @cached_property
+    def _blocks(self) -> Floats:
         # values before frames: the kernels' inner loop runs over frames that lie side by side
-        flat = np.concatenate(blocks).astype(np.float64) if blocks else np.zeros(0)
-        object.__setattr__(self, "_blocks", flat)
-        assert flat.size == width * int(self.offsets[-1])
+        spans = zip(self.offsets[:-1], self.offsets[1:], strict=True)
+        return np.concatenate([self.frames[a:b].T.ravel() for a, b in spans]).astype(np.float64)
+
+    @cached_property
+    def _roots(self) -> Floats:
+        return np.sqrt(self.jvh)
+
+    @cached_property
+    def _coarse(self) -> nearest.Coarse:
+        return nearest.coarse(self.mean, self.basis, self.frames, self.offsets)
+
+    @cached_property
+    def _bases_side_by_side(self) -> Floats:
+        return np.ascontiguousarray(np.moveaxis(self.basis, 0, -1))
 
     def __len__(self) -> int:
         return len(self.take)
@@ -238,6 +249,8 @@ class Index:
         InputError
             The query is empty, too narrow or wide, or not finite; the measure is unknown; k is less than 1.
         """
+        if k is not None and 1 <= k < len(self) and measure.startswith("DSPM"):
+            return ranking(self._first(self._query(x), k, measure), k)
         return ranking(self.distances(x, measure, reduction=reduction), k)
 
     def distances(self, x: ArrayLike, measure: str = "DSPM(PCA)", *, reduction: str = "max") -> Floats:
@@ -264,28 +277,49 @@ class Index:
             raise InputError(f"there is no measure {measure!r}; there are {', '.join(_MEASURES)}")
         if reduction not in ("max", "mean"):
             raise InputError(f"reduction is {reduction!r}, expected 'max' or 'mean'")
-        query = _checked(x, self.mean.shape[1], "the query")
+        query = self._query(x)
         plain = measure.removesuffix("+Jvh")
         if plain == "mean pose":
             distance: Floats = np.sqrt(np.square(self.mean - query.mean(axis=0)).sum(axis=1))
         else:
             distance = self._subspace_distances(query, plain, reduction == "mean")
         if measure.endswith("+Jvh"):
-            distance = distance * np.sqrt(1.0 - bhattacharyya(self.jvh, jvh(query)))
+            distance = distance * self._hellinger(query)
         return distance
+
+    def _query(self, x: ArrayLike) -> Floats:
+        return _checked(x, self.mean.shape[1], "the query")
+
+    def _hellinger(self, query: Floats) -> Floats:
+        return np.sqrt(1.0 - bhattacharyya(self._roots, jvh(query)))
+
+    def _drawn(self, query: Floats) -> Floats:
+        content = hashlib.sha256(np.ascontiguousarray(query).tobytes()).hexdigest()
+        return _draw(query, self.samples, self.seed, "query", content)
+
+    def _first(self, query: Floats, k: int, measure: str) -> Floats:
+        """DSPM's distances of the first k (and ties); infinity for segments that cannot be among them."""
+        mean, basis = subspace.fit(query, self.dims)
+        drawn = self._drawn(query)
+        factor = self._hellinger(query) if measure.endswith("+Jvh") else np.ones(len(self))
+        least = nearest.below(self._coarse, drawn, mean, basis) * factor
+        block = np.ascontiguousarray(drawn.T)
+        found: Floats = nearest.visit(
+            least, factor, k, block, self.mean, self.basis, self._blocks, self.offsets, mean, basis
+        )
+        return found
 
     def _subspace_distances(self, query: Floats, measure: str, mean_not_max: bool) -> Floats:
         mean, basis = subspace.fit(query, self.dims)
         if measure == "MSM":
             rank = int(basis.any(axis=1).sum())
             # a query that stands still has no subspace: all segments are equally far
-            return np.maximum(1.0 - subspace.shared(self.basis, basis) / rank, 0.0) if rank else np.ones(len(self))
-        content = hashlib.sha256(np.ascontiguousarray(query).tobytes()).hexdigest()
-        block = np.ascontiguousarray(_draw(query, self.samples, self.seed, "query", content).T)
+            return np.maximum(1.0 - subspace.shared(self._bases_side_by_side, basis) / rank, 0.0) if rank else np.ones(len(self))
+        block = np.ascontiguousarray(self._drawn(query).T)
         to: Floats = subspace.frames_to_subspaces(block, self.mean, self.basis, mean_not_max and measure == "SM(PCA)")
         if measure == "SM(PCA)":
             return to
-        back: Floats = subspace.samples_to_subspace(self._blocks, self.offsets, mean, basis)  # type: ignore[attr-defined]
+        back: Floats = subspace.samples_to_subspace(self._blocks, self.offsets, mean, basis)
         return np.maximum(to, back)
 
     def save(self, path: str | os.PathLike[str], sources: Mapping[str, str] | None = None) -> None:

@@ -26,15 +26,15 @@ def jvh(x: ArrayLike) -> Floats:
     return travelled / total if total > 0 else np.zeros_like(travelled)
 
 
-def bhattacharyya(p: ArrayLike, q: ArrayLike) -> Floats:
+def bhattacharyya(roots: ArrayLike, q: ArrayLike) -> Floats:
     """How alike histograms are.
 
     Parameters
     ----------
-    p : (S, D)
-        Histograms, each of sum 1 (or all zeros: nothing moves).
+    roots : (S, D)
+        Square roots of histograms, each histogram of sum 1 (or all zeros: nothing moves).
     q : (D,)
-        A histogram of the same kind.
+        A histogram.
 
     Returns
     -------
@@ -42,9 +42,9 @@ def bhattacharyya(p: ArrayLike, q: ArrayLike) -> Floats:
         Σ_i √(p_i q_i), 0 to 1 ([P], eq. 4, whose print leaves q_i outside the root). Two that do not move at all
         are alike: 1.
     """
-    a, b = np.asarray(p, dtype=np.float64), np.asarray(q, dtype=np.float64)
+    a, b = np.asarray(roots, dtype=np.float64), np.sqrt(np.asarray(q, dtype=np.float64))
     # products are summed in the same order for every row, so that equal histograms get equal bits
-    similar = np.minimum((np.sqrt(a) * np.sqrt(b)).sum(axis=1), 1.0)
+    similar = np.minimum((a * b).sum(axis=1), 1.0)
     if not b.any():
         similar = np.where(a.any(axis=1), 0.0, 1.0)
     return similar

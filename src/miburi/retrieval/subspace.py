@@ -115,18 +115,23 @@ def samples_to_subspace(blocks, offsets, mean, basis):  # type: ignore[no-untype
 def shared(bases, basis):  # type: ignore[no-untyped-def]
     """Σ cos² of the canonical angles between each segment's subspace and the query's.
 
-    bases (S, dims, D), basis (dims, D), orthonormal or zero rows; returns (S,). The sum of the squared singular
-    values of H Qᵀ is the sum of its squared entries, so no decomposition is needed.
+    bases (dims, D, S), segments side by side; basis (dims, D); orthonormal or zero rows; returns (S,). The sum of
+    the squared singular values of H Qᵀ is the sum of its squared entries, so no decomposition is needed.
     """
-    s, dims, width = bases.shape
-    out = np.empty(s)
-    for i in range(s):
-        added = 0.0
+    dims, width, s = bases.shape
+    out = np.zeros(s)
+    lanes = 64
+    dot = np.empty((len(basis), lanes))
+    for first in range(0, s, lanes):
+        n = min(lanes, s - first)
         for a in range(dims):
+            dot[:] = 0.0
+            for d in range(width):
+                for b in range(len(basis)):
+                    q = basis[b, d]
+                    for j in range(n):
+                        dot[b, j] += bases[a, d, first + j] * q
             for b in range(len(basis)):
-                dot = 0.0
-                for d in range(width):
-                    dot += bases[i, a, d] * basis[b, d]
-                added += dot * dot
-        out[i] = added
+                for j in range(n):
+                    out[first + j] += dot[b, j] * dot[b, j]
     return out
