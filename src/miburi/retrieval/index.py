@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -249,8 +248,8 @@ class Index:
         InputError
             The query is empty, too narrow or wide, or not finite; the measure is unknown; k is less than 1.
         """
-        if k is not None and 1 <= k < len(self) and measure.startswith("DSPM"):
-            return ranking(self._first(self._query(x), k, measure), k)
+        if k is not None and k >= 1 and (first := self._first(self._query(x), k, measure)) is not None:
+            return ranking(first, k)
         return ranking(self.distances(x, measure, reduction=reduction), k)
 
     def distances(self, x: ArrayLike, measure: str = "DSPM(PCA)", *, reduction: str = "max") -> Floats:
@@ -294,19 +293,27 @@ class Index:
         return np.sqrt(1.0 - bhattacharyya(self._roots, jvh(query)))
 
     def _drawn(self, query: Floats) -> Floats:
-        content = hashlib.sha256(np.ascontiguousarray(query).tobytes()).hexdigest()
-        return _draw(query, self.samples, self.seed, "query", content)
+        # column sums name the query: they cost nothing and differ between any two recordings
+        return _draw(query, self.samples, self.seed, "query", query.sum(axis=0).tobytes().hex())
 
-    def _first(self, query: Floats, k: int, measure: str) -> Floats:
-        """DSPM's distances of the first k (and ties); infinity for segments that cannot be among them."""
+    def _first(self, query: Floats, k: int, measure: str) -> Floats | None:
+        """Distances of the first k (and ties), infinity for segments that cannot be among them; None: no short cut."""
+        plain, with_jvh = measure.removesuffix("+Jvh"), measure.endswith("+Jvh")
+        if plain not in ("DSPM(PCA)", "MSM") or k >= len(self):
+            return None
         mean, basis = subspace.fit(query, self.dims)
+        histogram = jvh(query)
+        if not basis.any() or not histogram.any():
+            return None
+        factor = nearest.factor_below(self._roots, histogram) if with_jvh else np.ones(len(self))
+        if plain == "MSM":
+            least = nearest.msm_below(self._coarse, basis) * factor
+            return nearest.msm_first(least, self._roots if with_jvh else None, histogram, k, self.basis, basis)
         drawn = self._drawn(query)
-        factor = self._hellinger(query) if measure.endswith("+Jvh") else np.ones(len(self))
-        least = nearest.below(self._coarse, drawn, mean, basis) * factor
-        block = np.ascontiguousarray(drawn.T)
-        found: Floats = nearest.visit(
-            least, factor, k, block, self.mean, self.basis, self._blocks, self.offsets, mean, basis
-        )
+        least = nearest.dspm_below(self._coarse, drawn, mean, basis) * factor
+        block, root = np.ascontiguousarray(drawn.T), np.sqrt(histogram)
+        segments = (self.mean, self.basis, self._blocks, self.offsets)
+        found: Floats = nearest.dspm_first(least, self._roots, root, with_jvh, k, block, *segments, mean, basis)
         return found
 
     def _subspace_distances(self, query: Floats, measure: str, mean_not_max: bool) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import ArrayLike
 
 from miburi.motion import Floats
@@ -42,9 +43,20 @@ def bhattacharyya(roots: ArrayLike, q: ArrayLike) -> Floats:
         Σ_i √(p_i q_i), 0 to 1 ([P], eq. 4, whose print leaves q_i outside the root). Two that do not move at all
         are alike: 1.
     """
-    a, b = np.asarray(roots, dtype=np.float64), np.sqrt(np.asarray(q, dtype=np.float64))
-    # products are summed in the same order for every row, so that equal histograms get equal bits
-    similar = np.minimum((a * b).sum(axis=1), 1.0)
-    if not b.any():
-        similar = np.where(a.any(axis=1), 0.0, 1.0)
+    similar: Floats = overlap(np.asarray(roots, dtype=np.float64), np.sqrt(np.asarray(q, dtype=np.float64)))
     return similar
+
+
+@njit(cache=True)  # type: ignore[misc]
+def overlap(roots, root):  # type: ignore[no-untyped-def]
+    """`bhattacharyya` of square roots: roots (S, D), root (D,); returns (S,)."""
+    out = np.empty(len(roots))
+    still = not root.any()
+    for i in range(len(roots)):
+        added = 0.0
+        for d in range(len(root)):
+            added += roots[i, d] * root[d]
+        out[i] = min(added, 1.0)
+        if still:
+            out[i] = 0.0 if roots[i].any() else 1.0
+    return out

@@ -1,8 +1,9 @@
-"""The first k segments by DSPM, exactly, without looking at every frame of every segment.
+"""The first k segments, exactly, without looking at every frame of every segment.
 
 A maximum over frames is at least its value at any one frame, and Err (eq. 1) is convex, so it is also at least its
-value at the frames' mean. A few such points per side bound each segment's distance from below. Segments are visited
-from the lowest bound up, until the k-th distance found is below all bounds that are left.
+value at the frames' mean. A few such points per side bound each segment's DSPM from below; a few matrix products in
+float32 give all bounds. Segments are visited from the lowest bound up, until the k-th distance found is below all
+bounds that are left. What is visited is computed as for a whole ranking, so the first k are the same bits.
 """
 
 from __future__ import annotations
@@ -14,30 +15,37 @@ from numba import njit
 from numpy.typing import NDArray
 
 from miburi.motion import Floats
-from miburi.retrieval.subspace import _reduce, _residuals
+from miburi.retrieval.jvh import overlap
+from miburi.retrieval.subspace import reduced, residuals, shared
 
 POINTS = 3
-_LANES = 128
-# Bounds are computed in float32, whose rounding (6e-8 of the numbers' size) must not lift one above its distance:
-# shares of the squared distance to the mean and of the squared size that are taken off.
-_NEAR, _SLACK = 2e-5, 1e-6
+# What rounding in float32 may add to a square, as a share of the largest squared norm (sums of 42 products), and to
+# a coefficient of histograms in float64.
+_ROUNDING = 2e-5
+_ROUNDING_B = 1e-12
 
 Singles = NDArray[np.float32]
 
 
 class Coarse(NamedTuple):
-    """What bounds need, segments side by side (last axis) so that one instruction serves several of them."""
+    """What bounds need, in float32, segments on the last axis."""
 
     centre: Floats
-    """(D,): subtracted from all, so that float32 spends its digits on differences"""
+    """(D,): subtracted from all frames, so that float32 spends its digits on differences"""
     size: float
-    """largest squared norm of what is below"""
+    """largest squared norm of mean and points"""
     mean: Singles
     """(D, S)"""
+    mean_square: Singles
+    """(S,)"""
     basis: Singles
-    """(dims, D, S)"""
+    """(D, dims · S)"""
+    mean_along: Singles
+    """(dims, S): each segment's mean along its own basis"""
     points: Singles
-    """(POINTS, D, S): of each segment's frames"""
+    """(D, POINTS · S), of each segment's frames"""
+    points_square: Singles
+    """(POINTS · S,)"""
 
 
 def telling(frames: Floats) -> Floats:
@@ -55,80 +63,77 @@ def coarse(mean: Floats, basis: Floats, frames: NDArray[np.float32], offsets: ND
     """Prepare the bounds of an index's segments (arguments as in `Index`)."""
     spans = zip(offsets[:-1], offsets[1:], strict=True)
     centre = mean.mean(axis=0)
-    points = np.stack([telling(frames[a:b].astype(np.float64)) for a, b in spans]) - centre
-    size = float(max(np.square(points).sum(axis=2).max(), np.square(mean - centre).sum(axis=1).max()))
-    means, bases, telltale = (
-        np.ascontiguousarray(np.moveaxis(x, 0, -1), dtype=np.float32) for x in (mean - centre, basis, points)
+    points = np.stack([telling(frames[a:b].astype(np.float64)) for a, b in spans], axis=1) - centre
+    near = mean - centre
+    squares, point_squares = np.square(near).sum(axis=1), np.square(points).sum(axis=2)
+
+    def single(x: Floats) -> Singles:
+        return np.ascontiguousarray(x, dtype=np.float32)
+
+    return Coarse(
+        centre,
+        float(max(squares.max(), point_squares.max())),
+        single(near.T),
+        single(squares),
+        single(np.moveaxis(basis, 1, 0).reshape(-1, near.shape[1]).T),
+        single(np.einsum("smd,sd->ms", basis, near)),
+        single(points.reshape(-1, near.shape[1]).T),
+        single(point_squares.ravel()),
     )
-    return Coarse(centre, size, means, bases, telltale)
 
 
-def below(known: Coarse, frames: Floats, mean: Floats, basis: Floats) -> Floats:
-    """Lower bounds of the segments' DSPM, (S,).
-
-    Parameters
-    ----------
-    known
-        The segments.
-    frames : (n, D)
-        Frames drawn from the query.
-    mean : (D,)
-    basis : (dims, D)
-        The query's subspace.
-    """
-    points = telling(frames) - known.centre
-    size = max(known.size, np.square(points).sum(axis=1).max())
-    query = (a.astype(np.float32) for a in (points, mean - known.centre, basis))
-    squares = _squares(known.mean, known.basis, known.points, *query, np.float32(_SLACK * size))
-    return np.sqrt(squares.astype(np.float64))
+def dspm_below(known: Coarse, frames: Floats, mean: Floats, basis: Floats) -> Floats:
+    """Lower bounds of the segments' DSPM, (S,); frames (n, D) drawn from the query, its mean (D,) and basis (dims, D)."""
+    dims, s = known.mean_along.shape
+    x = telling(frames) - known.centre
+    q = mean - known.centre
+    size = max(known.size, float(np.square(x).sum(axis=1).max()))
+    x_square = np.square(x).sum(axis=1).astype(np.float32)
+    x32, q32, basis32 = x.astype(np.float32), q.astype(np.float32), basis.astype(np.float32)
+    # the query's points and the segments' subspaces
+    along = (x32 @ known.basis).reshape(POINTS, dims, s) - known.mean_along
+    there = known.mean_square - 2 * (x32 @ known.mean) + x_square[:, None] - np.einsum("pms,pms->ps", along, along)
+    # the segments' points and the query's subspace
+    along = basis32 @ known.points - (basis32 @ q32)[:, None]
+    back = known.points_square - 2 * (q32 @ known.points) + q32 @ q32 - np.einsum("ms,ms->s", along, along)
+    square = np.maximum(there.max(axis=0), back.reshape(POINTS, s).max(axis=0)).astype(np.float64)
+    return np.sqrt(np.maximum(square - _ROUNDING * size, 0.0))
 
 
-@njit(cache=True)  # type: ignore[misc]
-def _squares(mean, basis, points, query_points, query_mean, query_basis, slack):  # type: ignore[no-untyped-def]
-    """Squares below which DSPM's square cannot be, (S,) float32; float32 arguments, the first three as in `Coarse`."""
-    width, s = mean.shape
-    dims = len(query_basis)
-    out = np.zeros(s, dtype=np.float32)
-    gap = np.empty(_LANES, dtype=np.float32)
-    total = np.empty(_LANES, dtype=np.float32)
-    along = np.empty((dims, _LANES), dtype=np.float32)
-    for first in range(0, s, _LANES):
-        n = min(_LANES, s - first)
-        for p in range(2 * POINTS):
-            total[:] = 0.0
-            along[:] = 0.0
-            for d in range(width):
-                if p < POINTS:
-                    # the query's points and the segments' subspaces
-                    for j in range(n):
-                        gap[j] = query_points[p, d] - mean[d, first + j]
-                    for m in range(dims):
-                        for j in range(n):
-                            along[m, j] += basis[m, d, first + j] * gap[j]
-                else:
-                    for j in range(n):
-                        gap[j] = points[p - POINTS, d, first + j] - query_mean[d]
-                    for m in range(dims):
-                        b = query_basis[m, d]
-                        for j in range(n):
-                            along[m, j] += b * gap[j]
-                for j in range(n):
-                    total[j] += gap[j] * gap[j]
-            for j in range(n):
-                total[j] = total[j] * np.float32(1.0 - _NEAR) - slack
-            for m in range(dims):
-                for j in range(n):
-                    total[j] -= along[m, j] * along[m, j]
-            for j in range(n):
-                out[first + j] = max(out[first + j], total[j])
+def msm_below(known: Coarse, basis: Floats) -> Floats:
+    """Lower bounds of 1 − Σ cos² / M, (S,), of the query's basis (dims, D)."""
+    dims, s = known.mean_along.shape
+    dots = (basis.astype(np.float32) @ known.basis).reshape(-1, dims, s)
+    added = np.einsum("bas,bas->s", dots, dots).astype(np.float64)
+    return np.maximum(1.0 - added / basis.any(axis=1).sum() - _ROUNDING, 0.0)
+
+
+def factor_below(roots: Floats, histogram: Floats) -> Floats:
+    """Lower bounds of √(1 − B), (S,); arguments as in `jvh.bhattacharyya`, the query's histogram not all zeros."""
+    return np.sqrt(np.maximum(1.0 - roots @ np.sqrt(histogram) - _ROUNDING_B, 0.0))
+
+
+def msm_first(least: Floats, roots: Floats | None, histogram: Floats, k: int, bases: Floats, basis: Floats) -> Floats:
+    """MSM (times √(1 − B), where there are roots) of the segments that may be among the first k; infinity elsewhere."""
+    rank = basis.any(axis=1).sum()
+    out = np.full(len(least), np.inf)
+
+    def add(some: NDArray[np.intp]) -> None:
+        distance = np.maximum(1.0 - shared(np.ascontiguousarray(np.moveaxis(bases[some], 0, -1)), basis) / rank, 0.0)
+        out[some] = distance if roots is None else distance * np.sqrt(1.0 - overlap(roots[some], np.sqrt(histogram)))
+
+    add(np.argpartition(least, k - 1)[:k])
+    reach = np.partition(out, k - 1)[k - 1]
+    add(np.flatnonzero((least <= reach) & np.isinf(out)))
     return out
 
 
 @njit(cache=True)  # type: ignore[misc]
-def visit(least, factor, k, frames, means, bases, blocks, offsets, mean, basis):  # type: ignore[no-untyped-def]
-    """Distances of the segments that may be among the first k; infinity elsewhere.
+def dspm_first(least, roots, root, with_jvh, k, frames, means, bases, blocks, offsets, mean, basis):  # type: ignore[no-untyped-def]
+    """DSPM (times √(1 − B)) of the segments that may be among the first k, (S,); infinity elsewhere.
 
-    least (S,): lower bounds; factor (S,): what each distance is multiplied by; the rest as in `subspace`.
+    least (S,): lower bounds; roots (S, D) and root (D,): square roots of histograms of movement; the rest as in
+    `subspace`.
     """
     s, dims = len(least), len(basis)
     width, n = frames.shape
@@ -136,8 +141,7 @@ def visit(least, factor, k, frames, means, bases, blocks, offsets, mean, basis):
     for i in range(s):
         longest = max(longest, offsets[i + 1] - offsets[i])
     total, along = np.empty(longest), np.empty((dims, longest))
-    out = np.full(s, np.inf)
-    best = np.full(k, np.inf)
+    out, best = np.full(s, np.inf), np.full(k, np.inf)
     # the k lowest bounds first: their distances already leave few others to look at
     reach = np.partition(least, k - 1)[k - 1]
     for turn in range(2):
@@ -149,14 +153,15 @@ def visit(least, factor, k, frames, means, bases, blocks, offsets, mean, basis):
         for i in todo:
             if least[i] > best[k - 1]:
                 continue
-            _residuals(frames, means[i], bases[i], total, along)
-            there = _reduce(total, n, False)
-            if there * factor[i] > best[k - 1]:
+            factor = np.sqrt(1.0 - overlap(roots[i : i + 1], root)[0]) if with_jvh else 1.0
+            residuals(frames, means[i], bases[i], total, along)
+            there = reduced(total, n, False)
+            if there * factor > best[k - 1]:
                 continue
             size = offsets[i + 1] - offsets[i]
             block = blocks[width * offsets[i] : width * offsets[i + 1]].reshape(width, size)
-            _residuals(block, mean, basis, total, along)
-            distance = max(there, _reduce(total, size, False)) * factor[i]
+            residuals(block, mean, basis, total, along)
+            distance = max(there, reduced(total, size, False)) * factor
             out[i] = distance
             j = k - 1
             if distance < best[j]:

@@ -43,7 +43,7 @@ def fit(x: ArrayLike, dims: int) -> tuple[Floats, Floats]:
 
 
 @njit(cache=True)  # type: ignore[misc]
-def _residuals(block, mean, basis, total, along):  # type: ignore[no-untyped-def]
+def residuals(block, mean, basis, total, along):  # type: ignore[no-untyped-def]
     """Fill total[:n] with Err² (eq. 1) of the frames in the columns of block (D, n)."""
     width, n = block.shape
     dims = basis.shape[0]
@@ -68,7 +68,7 @@ def _residuals(block, mean, basis, total, along):  # type: ignore[no-untyped-def
 
 
 @njit(cache=True)  # type: ignore[misc]
-def _reduce(total, n, mean_not_max):  # type: ignore[no-untyped-def]
+def reduced(total, n, mean_not_max):  # type: ignore[no-untyped-def]
     """Largest or mean Err of the first n squares; rounding below zero is zero."""
     worst, added = 0.0, 0.0
     for j in range(n):
@@ -86,8 +86,8 @@ def frames_to_subspaces(frames, means, bases, mean_not_max):  # type: ignore[no-
     s, dims, n = len(means), bases.shape[1], frames.shape[1]
     total, along, out = np.empty(n), np.empty((dims, n)), np.empty(s)
     for i in range(s):
-        _residuals(frames, means[i], bases[i], total, along)
-        out[i] = _reduce(total, n, mean_not_max)
+        residuals(frames, means[i], bases[i], total, along)
+        out[i] = reduced(total, n, mean_not_max)
     return out
 
 
@@ -106,8 +106,8 @@ def samples_to_subspace(blocks, offsets, mean, basis):  # type: ignore[no-untype
     for i in range(s):
         n = offsets[i + 1] - offsets[i]
         block = blocks[width * offsets[i] : width * offsets[i + 1]].reshape(width, n)
-        _residuals(block, mean, basis, total, along)
-        out[i] = _reduce(total, n, False)
+        residuals(block, mean, basis, total, along)
+        out[i] = reduced(total, n, False)
     return out
 
 
@@ -120,17 +120,19 @@ def shared(bases, basis):  # type: ignore[no-untyped-def]
     """
     dims, width, s = bases.shape
     out = np.zeros(s)
-    lanes = 64
+    lanes = 128
     dot = np.empty((len(basis), lanes))
     for first in range(0, s, lanes):
         n = min(lanes, s - first)
         for a in range(dims):
             dot[:] = 0.0
             for d in range(width):
+                # slices, not first + j: the compiler sees that indices are not negative and runs lanes in parallel
+                here = bases[a, d, first : first + n]
                 for b in range(len(basis)):
-                    q = basis[b, d]
+                    q, line = basis[b, d], dot[b]
                     for j in range(n):
-                        dot[b, j] += bases[a, d, first + j] * q
+                        line[j] += here[j] * q
             for b in range(len(basis)):
                 for j in range(n):
                     out[first + j] += dot[b, j] * dot[b, j]
