@@ -11,7 +11,8 @@ from miburi.formats.labels import read_labels, write_labels
 from miburi.motion import Motion, Skeleton
 
 KNOWN = (
-    ".bvh (Biovision), .amc (Acclaim, with its .asf), .csv (glove log, puppet log), other loggers' .csv, .txt and "
+    ".bvh (Biovision), .amc (Acclaim, with its .asf), .csv (glove log, puppet log), other loggers' "
+    ".csv, .txt and "
     ".dat with a column map; each also gzipped (.gz)"
 )
 """The formats that can be read, for messages."""
@@ -57,7 +58,11 @@ def read(
     ending = text.suffix(path)
     if ending == ".bvh":
         return bvh.read(
-            path, fps=rate, unit=_option(corpus, "unit"), up=_option(corpus, "up"), joints=_option(corpus, "joints")
+            path,
+            fps=rate,
+            unit=_option(corpus, "unit"),
+            up=_option(corpus, "up"),
+            joints=_option(corpus, "joints"),
         )
     if ending == ".amc":
         asf = skeleton if skeleton is not None else _option(corpus, "skeleton")
@@ -79,7 +84,8 @@ def _table(path: text.File, fps: float | None, corpus: Any) -> Motion:
     if (columns := _option(corpus, "columns")) is not None:
         return glove.read_columns(path, columns, fps=fps)
     raise InputError(
-        f"{path}, line 1: is neither a glove log nor a puppet log; another logger's table needs a column map (config key "
+        f"{path}, line 1: is neither a glove log nor a puppet log; another logger's table needs a "
+        "column map (config key "
         f"`columns`); known are {KNOWN}"
     )
 
@@ -98,7 +104,8 @@ def write(path: text.File, motion: Motion) -> None:
 
 
 def inspect(path: text.File, *, corpus: Any = None) -> dict[str, object]:
-    """How a recording is understood: format, joints, frames, rate, unit, upward axis and what these rest on."""
+    """How a recording is understood: format, joints, frames, rate, unit, upward axis and what these rest
+    on."""
     motion = read(path, corpus=corpus)
     ending = text.suffix(path)
     facts: dict[str, object] = {

@@ -1,4 +1,5 @@
-"""Local rotations of joints from columns of Euler angles, each joint with its own order and number of angles."""
+"""Local rotations of joints from columns of Euler angles, each joint with its own order and number of
+angles."""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 from miburi.motion import Floats
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _compose(values, columns, axes, half, out):  # type: ignore[no-untyped-def]
     for t in range(values.shape[0]):
         for j in range(columns.shape[0]):
@@ -30,7 +31,9 @@ def _compose(values, columns, axes, half, out):  # type: ignore[no-untyped-def]
             out[t, j, 0], out[t, j, 1], out[t, j, 2], out[t, j, 3] = x, y, z, w
 
 
-def rotations(values: Floats, columns: NDArray[np.int64], axes: NDArray[np.int64], *, degrees: bool = True) -> Floats:
+def rotations(
+    values: Floats, columns: NDArray[np.int64], axes: NDArray[np.int64], *, degrees: bool = True
+) -> Floats:
     """Unit quaternions of joints from a table of angles.
 
     R of a joint is the product, from left to right, of the rotations about its axes.
@@ -71,4 +74,5 @@ def zxy(quaternions: Floats) -> Floats:
     about_x = np.arctan2(r21, cosine)
     about_y = np.where(locked, 0.0, np.arctan2(-r20, r22))
     about_z = np.where(locked, np.arctan2(r10, r00), np.arctan2(-r01, r11))
-    return np.degrees(np.stack([about_z, about_x, about_y], axis=-1))
+    degrees: Floats = np.degrees(np.stack([about_z, about_x, about_y], axis=-1))
+    return degrees

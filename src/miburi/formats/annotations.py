@@ -1,4 +1,5 @@
-"""Annotations: a tab-separated table of what happens when, `take, start_s, end_s, keyword` and any more columns."""
+"""Annotations: a tab-separated table of what happens when, `take, start_s, end_s, keyword` and any more
+columns."""
 
 from __future__ import annotations
 
@@ -21,7 +22,7 @@ class Annotation(NamedTuple):
     start_s: float
     end_s: float
     keyword: str
-    more: Mapping[str, str] = {}  # noqa: RUF012 (never changed)
+    more: Mapping[str, str] = {}
 
 
 def read_annotations(path: text.File) -> list[Annotation]:
@@ -36,7 +37,9 @@ def read_annotations(path: text.File) -> list[Annotation]:
     header = [c.strip() for c in lines[0].split("\t")]
     for column in COLUMNS:
         if column not in header:
-            raise InputError(f"{path}, line 1: the column {column!r} is missing; there are {', '.join(header)}")
+            raise InputError(
+                f"{path}, line 1: the column {column!r} is missing; there are {', '.join(header)}"
+            )
     if len(set(header)) != len(header):
         twice = next(c for c in header if header.count(c) > 1)
         raise InputError(f"{path}, line 1: the column {twice!r} stands twice")
@@ -77,7 +80,13 @@ def write_annotations(path: text.File, rows: Sequence[Annotation]) -> None:
     extra = list(dict.fromkeys(k for r in rows for k in r.more))
     lines = ["\t".join([*COLUMNS, *extra])]
     for number, r in enumerate(rows, 2):
-        cells = [r.take, _seconds(r.start_s), _seconds(r.end_s), r.keyword, *(r.more.get(k, "") for k in extra)]
+        cells = [
+            r.take,
+            _seconds(r.start_s),
+            _seconds(r.end_s),
+            r.keyword,
+            *(r.more.get(k, "") for k in extra),
+        ]
         if any(c in cell for cell in cells for c in "\t\n\r"):
             raise InputError(f"{path}, line {number}: a tab or a line's end cannot stand in a cell")
         row = dict(zip([*COLUMNS, *extra], cells, strict=True))

@@ -19,9 +19,9 @@ A map is YAML (ready ones are in config/gloves/), columns are counted from 0:
       - {column: 10, joint: [middle1, index1], axis: z}
       - {quaternion: 8, about: z, joint: index2, axis: x}
 
-Degrees are factor · (value − offset), the offset in the file's unit. `joint` as a list, `weights` and `also` are as
-in a calibration (`miburi.formats.glove`). A quaternion (x y z w, four columns, counted in fours) gives its angle of
-twist about one of its own axes, in degrees.
+Degrees are factor · (value − offset), the offset in the file's unit. `joint` as a list, `weights` and `also`
+are as in a calibration (`miburi.formats.glove`). A quaternion (x y z w, four columns, counted in fours)
+gives its angle of twist about one of its own axes, in degrees.
 """
 
 from __future__ import annotations
@@ -38,8 +38,19 @@ from miburi.formats import tables, text
 from miburi.motion import Floats
 
 _KEYS = (
-    "fps", "separator", "decimal", "header", "count", "unit", "text", "brackets", "lying", "skip", "time", "columns",
-)  # fmt: skip
+    "fps",
+    "separator",
+    "decimal",
+    "header",
+    "count",
+    "unit",
+    "text",
+    "brackets",
+    "lying",
+    "skip",
+    "time",
+    "columns",
+)
 _ENTRY = ("column", "quaternion", "about", "joint", "axis", "factor", "offset", "weights", "also")
 _DEGREES = {"degrees": 1.0, "radians": 180 / np.pi, "counts": 1.0}
 _SECONDS = {"seconds": 1.0, "milliseconds": 1e-3, "days": 86400.0}
@@ -53,7 +64,9 @@ def check_keys(where: object, key: str, entry: Map, known: tuple[str, ...]) -> N
     """InputError if a mapping has a key that is not known."""
     for found in entry:
         if found not in known and found != NAME:
-            raise InputError(f"{where}: there is no key {key + '.' if key else ''}{found}; there are {', '.join(known)}")
+            raise InputError(
+                f"{where}: there is no key {key + '.' if key else ''}{found}; there are {', '.join(known)}"
+            )
 
 
 def angle_index(where: object, key: str, joint: object, axis: object) -> int:
@@ -73,7 +86,9 @@ def shares(where: object, key: str, entry: Map) -> Floats:
         joints = joint if isinstance(joint, list) else [joint]
         weights = entry.get("weights", [1.0] if len(joints) == 1 else [0.5, -0.5])
         if not isinstance(weights, list) or len(weights) != len(joints):
-            raise InputError(f"{where}: {key}.weights is {weights!r}, expected one number for each of {len(joints)} joints")
+            raise InputError(
+                f"{where}: {key}.weights is {weights!r}, expected one number for each of {len(joints)} joints"
+            )
         for name, weight in zip(joints, weights, strict=True):
             index = angle_index(where, key, name, entry.get("axis"))
             row[index] += tables.number(str(where), f"{key}.weights", weight)
@@ -98,12 +113,22 @@ def load(columns: text.File | Map) -> Map:
     InputError
         A key is unknown or has a value that it cannot have.
     """
-    found = dict(columns) if isinstance(columns, Mapping) else tables.load_yaml(columns) | {NAME: str(columns)}
+    found = (
+        dict(columns) if isinstance(columns, Mapping) else tables.load_yaml(columns) | {NAME: str(columns)}
+    )
     where = found.setdefault(NAME, "columns")
     check_keys(where, "", found, _KEYS)
-    for key, kind in (("separator", str), ("decimal", str), ("brackets", bool), ("lying", bool), ("text", list)):
+    for key, kind in (
+        ("separator", str),
+        ("decimal", str),
+        ("brackets", bool),
+        ("lying", bool),
+        ("text", list),
+    ):
         if not isinstance(found.get(key, kind()), kind):
-            raise InputError(f"{where}: {key} is {found[key]!r}, expected {'a list' if kind is list else kind.__name__}")
+            raise InputError(
+                f"{where}: {key} is {found[key]!r}, expected {'a list' if kind is list else kind.__name__}"
+            )
     for key in ("header", "skip", "count"):
         value = found.get(key, 0)
         if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= 1_000_000:
@@ -160,7 +185,9 @@ def raw(path: text.File, columns: Map) -> tuple[list[str], Floats]:
     count = len(first) if lying else columns.get("count") or len(first)
     skipped = set(columns.get("text", []))
     numeric = [c for c in range(count) if c not in skipped]
-    values = _mixed(path, plain, begin, count, numeric) if skipped else text.numbers(path, plain, begin, count)
+    values = (
+        _mixed(path, plain, begin, count, numeric) if skipped else text.numbers(path, plain, begin, count)
+    )
     if lying:
         values = np.ascontiguousarray(values.T)
         numeric = list(range(values.shape[1]))
@@ -228,7 +255,9 @@ def read(path: text.File, columns: Map, *, fps: float | None = None) -> tuple[Fl
 
     def column(index: int, key: str) -> Floats:
         if index not in place:
-            raise InputError(f"{path}: has no column of numbers {index}, which {where} names in {key}; it has {len(names)}")
+            raise InputError(
+                f"{path}: has no column of numbers {index}, which {where} names in {key}; it has {len(names)}"
+            )
         return values[:, place[index]]
 
     scale = _DEGREES[columns.get("unit", "degrees")]

@@ -12,10 +12,11 @@
       s12: {gain: 0.2, offset: 80, joint: [middle1, index1], axis: z}
       s21: {}
 
-`axis` is z, x or y of the joint (`figures.HAND`: flexion +x, a right hand's fingers spread towards the little finger
-about +z). A sensor that couples two joints lists both: half of its angle goes to the first and half, with the other
-sign, to the second; `weights: [0.7, -0.3]` says it otherwise. `also` gives shares to joints that have no sensor of
-their own. What several sensors say of one angle is added. `{}` marks a sensor that belongs to no joint.
+`axis` is z, x or y of the joint (`figures.HAND`: flexion +x, a right hand's fingers spread towards the
+little finger about +z). A sensor that couples two joints lists both: half of its angle goes to the first and
+half, with the other sign, to the second; `weights: [0.7, -0.3]` says it otherwise. `also` gives shares to
+joints that have no sensor of their own. What several sensors say of one angle is added. `{}` marks a sensor
+that belongs to no joint.
 
 *Column map.* See `miburi.formats.columns`.
 """
@@ -65,8 +66,8 @@ class Calibration:
 class Sensor(NamedTuple):
     """What a sensor of a log looks like.
 
-    `saturated` is the share of frames at 0 or at the highest count (in a foreign table, whose range is not known: at
-    the lowest or highest value that it reaches); `dead` says that it never changes.
+    `saturated` is the share of frames at 0 or at the highest count (in a foreign table, whose range is not
+    known: at the lowest or highest value that it reaches); `dead` says that it never changes.
     """
 
     name: str
@@ -105,7 +106,9 @@ def read(path: text.File, *, fps: float | None = None, calibration: text.File | 
     if unknown := [s for s in sensors if s not in by.sensors]:
         raise InputError(f"{where}: the key 'sensors.{unknown[0]}' is missing, which {path} has")
     ordered = counts[:, [sensors.index(s) for s in by.sensors]]
-    return motion(((ordered - by.offsets) * by.gains) @ by.weights, rate if fps is None else fps, text.stem(path))
+    return motion(
+        ((ordered - by.offsets) * by.gains) @ by.weights, rate if fps is None else fps, text.stem(path)
+    )
 
 
 def motion(degrees: ArrayLike, fps: float, name: str = "") -> Motion:
@@ -159,7 +162,8 @@ def _check_counts(path: text.File, sensors: list[str], counts: Floats, maximum: 
     if len(wrong):
         k, s = wrong[0]
         raise InputError(
-            f"{path}, line {first + k}: column {sensors[s]!r} is {counts[k, s]:g}, expected a whole count from 0 to {maximum}"
+            f"{path}, line {first + k}: column {sensors[s]!r} is {counts[k, s]:g}, expected a whole "
+            f"count from 0 to {maximum}"
         )
 
 
@@ -179,7 +183,9 @@ def read_calibration(path: text.File) -> Calibration:
     for name, entry in entries.items():
         key = f"sensors.{name}"
         if not isinstance(entry, Mapping):
-            raise InputError(f"{path}: {key} is {text.shown(str(entry))}, expected gain, offset, joint and axis")
+            raise InputError(
+                f"{path}: {key} is {text.shown(str(entry))}, expected gain, offset, joint and axis"
+            )
         maps.check_keys(path, key, entry, ("gain", "offset", "joint", "axis", "weights", "also"))
         used = bool(entry)
         gains.append(tables.number(path, f"{key}.gain", entry.get("gain")) if used else 0.0)
@@ -218,7 +224,9 @@ def write_log(
     if len(names) != values.shape[1]:
         raise InputError(f"{path}: {len(names)} names for {values.shape[1]} sensors")
     _check_counts(path, names, values, maximum, 3)
-    keys: dict[str, object] = {"fps": fps, "sensors": len(names)} | ({} if maximum == 255 else {"max": maximum})
+    keys: dict[str, object] = {"fps": fps, "sensors": len(names)}
+    if maximum != 255:
+        keys["max"] = maximum
     head = tables.first_line(SIGNATURE, keys | ({"simulated": 1} if simulated else {}) | more)
     table = np.column_stack([np.arange(len(values)), values]).astype(np.int64).tolist()
     rows = [",".join(map(str, row)) for row in table]

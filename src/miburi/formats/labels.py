@@ -2,13 +2,14 @@
 
 Read are, told by ending and content:
 
-* `.lab`: HTK, `start end label` in units of 100 ns, in frames or in seconds (`unit`; absent: seconds if a time has a
-  point, 100 ns if the intervals last 20 000 units or more in the middle, else frames);
-* `.tsv`: a header `start_frame end_frame label`; the end is exclusive, or inclusive, as `end_frame_exclusive` or
-  `end_frame_inclusive` says; under a plain `end_frame` it is inclusive if intervals follow each other with the next
-  frame and never with the same one;
+* `.lab`: HTK, `start end label` in units of 100 ns, in frames or in seconds (`unit`; absent: seconds if a
+  time has a point, 100 ns if the intervals last 20 000 units or more in the middle, else frames);
+* `.tsv`: a header `start_frame end_frame label`; the end is exclusive, or inclusive, as
+  `end_frame_exclusive` or `end_frame_inclusive` says; under a plain `end_frame` it is inclusive if intervals
+  follow each other with the next frame and never with the same one;
 * `.txt`: an Audacity label track, seconds;
-* `.TextGrid` (Praat, by praatio) and `.eaf` (ELAN, by pympi-ling): the extra `labels` installs both libraries.
+* `.TextGrid` (Praat, by praatio) and `.eaf` (ELAN, by pympi-ling): the extra `labels` installs both
+  libraries.
 
 Times become frame boundaries by rounding t · fps to the nearest whole number, a half upwards.
 """
@@ -18,6 +19,7 @@ from __future__ import annotations
 import importlib
 import logging
 from collections.abc import Sequence
+from itertools import pairwise
 from types import ModuleType
 from typing import Literal
 
@@ -83,7 +85,9 @@ def read_labels(
     return _checked(path, rows, scale, frames, "interval" if ending in (".textgrid", ".eaf") else "line")
 
 
-def _checked(path: text.File, rows: list[_Row], scale: float, frames: int | None, place: str) -> list[Interval]:
+def _checked(
+    path: text.File, rows: list[_Row], scale: float, frames: int | None, place: str
+) -> list[Interval]:
     """Rows as sorted intervals of frames."""
     found: list[tuple[int, int, str, int]] = []
     for number, start, end, label in rows:
@@ -99,9 +103,11 @@ def _checked(path: text.File, rows: list[_Row], scale: float, frames: int | None
             raise InputError(f"{where}: the label {label!r} ends with frame {last}, the take has {frames}")
         found.append((first, last, label, number))
     found.sort()
-    for (_, end, one, _), (start, _, other, number) in zip(found, found[1:], strict=False):
+    for (_, end, one, _), (start, _, other, number) in pairwise(found):
         if start < end:
-            raise InputError(f"{path}, {place} {number}: {other!r} begins at frame {start}, before {one!r} ends at {end}")
+            raise InputError(
+                f"{path}, {place} {number}: {other!r} begins at frame {start}, before {one!r} ends at {end}"
+            )
     return [(s, e, label) for s, e, label, _ in found]
 
 
@@ -140,7 +146,8 @@ def _tsv(path: text.File) -> list[_Row]:
     ends = [c for c in header if c in ("end_frame", "end_frame_exclusive", "end_frame_inclusive")]
     if "start_frame" not in header or "label" not in header or len(ends) != 1:
         raise InputError(
-            f"{path}, line 1: found {text.shown(' '.join(header))}, expected the columns start_frame, end_frame and label"
+            f"{path}, line 1: found {text.shown(' '.join(header))}, expected the columns start_frame, "
+            "end_frame and label"
         )
     rows: list[_Row] = []
     for number, cells in lines[1:]:
@@ -158,7 +165,7 @@ def _tsv(path: text.File) -> list[_Row]:
 
 def _looks_inclusive(path: text.File, rows: list[_Row]) -> bool:
     times = sorted((s, e) for _, s, e, _ in rows)
-    steps = [following[0] - this[1] for this, following in zip(times, times[1:], strict=False)]
+    steps = [following[0] - this[1] for this, following in pairwise(times)]
     inclusive = 0 not in steps and (1 in steps or any(s == e for s, e in times))
     log.info("%s: end_frame is read as %s", path, "inclusive" if inclusive else "exclusive")
     return inclusive
@@ -171,7 +178,9 @@ def _audacity(path: text.File) -> list[_Row]:
         if cells[0] == "\\":  # the frequencies of the label above
             continue
         if len(cells) != 3:
-            raise InputError(f"{where}: {len(cells)} columns, expected start, end and label of an Audacity label track")
+            raise InputError(
+                f"{where}: {len(cells)} columns, expected start, end and label of an Audacity label track"
+            )
         rows.append((number, _time(where, cells[0]), _time(where, cells[1]), cells[2]))
     return rows
 
@@ -180,7 +189,9 @@ def _library(path: text.File, module: str, package: str) -> ModuleType:
     try:
         return importlib.import_module(module)
     except ImportError:
-        raise InputError(f"{path}: needs the library {package}; install it with: pip install 'miburi[labels]'") from None
+        raise InputError(
+            f"{path}: needs the library {package}; install it with: pip install 'miburi[labels]'"
+        ) from None
 
 
 def _one_tier(path: text.File, tier: str | None, tiers: Sequence[str]) -> str:

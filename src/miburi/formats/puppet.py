@@ -8,9 +8,10 @@ First line `# miburi puppet log 1, fps=60`, then a header and rows of comma-sepa
     sensors:
       l_elbow_x: {gain: 0.2933, offset: 102}
 
-Axes: x to the puppet's left, y up, z forward. At zero all limbs hang straight down. Signs are anatomical and the same
-for both sides (abduction, flexion and outward rotation are positive): with s = +1 on the left and −1 on the right,
-upper arm Rz(s z) Rx(−x) Ry(s y), forearm Rx(−x), thigh Rz(s z) Rx(−x), shank Rx(x), trunk Ry(yaw) Rx(pitch) Rz(roll).
+Axes: x to the puppet's left, y up, z forward. At zero all limbs hang straight down. Signs are anatomical and
+the same for both sides (abduction, flexion and outward rotation are positive): with s = +1 on the left and
+−1 on the right, upper arm Rz(s z) Rx(−x) Ry(s y), forearm Rx(−x), thigh Rz(s z) Rx(−x), shank Rx(x), trunk
+Ry(yaw) Rx(pitch) Rz(roll).
 """
 
 from __future__ import annotations
@@ -57,13 +58,11 @@ for _s, _sign in (("l", 1), ("r", -1)):
     _TURNS[f"{_s}_knee"] = [("x", f"{_s}_knee_x", 1)]
 
 
-def read(
-    path: text.File, *, fps: float | None = None, calibration: text.File | None = None
-) -> Motion:
+def read(path: text.File, *, fps: float | None = None, calibration: text.File | None = None) -> Motion:
     """Read a puppet log.
 
-    Where the clock is uneven (a step differs from 1 / fps by more than 2 %), the angles are interpolated linearly at
-    1 / fps; otherwise rows are frames.
+    Where the clock is uneven (a step differs from 1 / fps by more than 2 %), the angles are interpolated
+    linearly at 1 / fps; otherwise rows are frames.
 
     Parameters
     ----------
@@ -193,7 +192,9 @@ def write_log(
     """
     values = np.asarray(degrees, dtype=np.float64)
     if values.ndim != 2 or values.shape[1] != len(COLUMNS) or not np.isfinite(values).all():
-        raise InputError(f"{path}: puppet angles of shape {values.shape}, expected finite (T, {len(COLUMNS)})")
+        raise InputError(
+            f"{path}: puppet angles of shape {values.shape}, expected finite (T, {len(COLUMNS)})"
+        )
     seconds = np.arange(len(values)) / fps if time is None else np.asarray(time, dtype=np.float64)
     if seconds.shape != (len(values),) or (np.diff(seconds) <= 0).any():
         raise InputError(f"{path}: the times of a puppet log must be one a row and increase")

@@ -1,4 +1,5 @@
-"""What glove and puppet logs share: a first line with keys, a header, comma-separated numbers, an even clock."""
+"""What glove and puppet logs share: a first line with keys, a header, comma-separated numbers, an even
+clock."""
 
 from __future__ import annotations
 
@@ -22,7 +23,9 @@ def first_line(signature: str, keys: Mapping[str, object]) -> str:
     for key, value in keys.items():
         if any(c in f"{key}{value}" for c in ",=\n\r"):
             raise InputError(f"the key {key!r} of a log cannot be {value!r}")
-    values = [f"{k}={v:g}" if isinstance(v, float) and float(f"{v:g}") == v else f"{k}={v}" for k, v in keys.items()]
+    values = [
+        f"{k}={v:g}" if isinstance(v, float) and float(f"{v:g}") == v else f"{k}={v}" for k, v in keys.items()
+    ]
     return ", ".join([f"# {signature}", *values])
 
 
@@ -87,7 +90,9 @@ def read(path: text.File, data: bytes) -> tuple[list[str], Floats]:
     lines = data.split(b"\n", 2)
     columns = [c.strip() for c in text.decode(lines[1]).split(",")] if len(lines) > 1 else []
     if not columns or not all(columns):
-        raise InputError(f"{path}, line 2: found {text.shown(lines[1] if len(lines) > 1 else b'')}, expected a header")
+        raise InputError(
+            f"{path}, line 2: found {text.shown(lines[1] if len(lines) > 1 else b'')}, expected a header"
+        )
     if len(set(columns)) != len(columns):
         twice = next(c for c in columns if columns.count(c) > 1)
         raise InputError(f"{path}, line 2: the column {twice!r} stands twice")
@@ -115,13 +120,10 @@ def complain(path: text.File, data: bytes, begin: int, columns: list[str]) -> No
                 s = "" if len(cells) == 1 else "s"
                 raise InputError(f"{path}, line {number}: {len(cells)} value{s}, expected {len(columns)}")
             for cell, column in zip(cells, columns, strict=True):
-                try:
-                    good = bool(np.isfinite(float(cell))) and b"_" not in cell
-                except ValueError:
-                    good = False
-                if not good:
+                if text.real(cell) is None:
                     raise InputError(
-                        f"{path}, line {number}: column {column!r} is {text.shown(cell)}, expected a finite number"
+                        f"{path}, line {number}: column {column!r} is {text.shown(cell)}, expected a "
+                        "finite number"
                     )
         number += 1
     raise InputError(f"{path}, line {text.line_of(data, begin)}: the rows are no comma-separated numbers")
@@ -153,12 +155,16 @@ def even(
     if wrong.size:
         k = int(wrong[0])
         raise InputError(
-            f"{path}, line {first + k + 1}: the time {time[k + 1]:g} s does not follow {time[k]:g} s in line {first + k}"
+            f"{path}, line {first + k + 1}: the time {time[k + 1]:g} s does not follow {time[k]:g} s "
+            f"in line {first + k}"
         )
     far = np.flatnonzero(steps > LONGEST_GAP_S)
     if far.size:
         k = int(far[0])
-        raise InputError(f"{path}, line {first + k + 1}: the clock jumps by {steps[k]:g} s, at most {LONGEST_GAP_S:g} s pass")
+        raise InputError(
+            f"{path}, line {first + k + 1}: the clock jumps by {steps[k]:g} s, at most "
+            f"{LONGEST_GAP_S:g} s pass"
+        )
     # times are written to a tenth of a millisecond
     if len(time) < 2 or np.abs(steps - 1 / fps).max() <= 0.02 / fps + 1.01e-4:
         return time, values
@@ -182,7 +188,9 @@ def load_yaml(path: text.File) -> dict[str, Any]:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = f", line {mark.line + 1}" if mark is not None else ""
-        raise InputError(f"{path}{line}: is no YAML ({getattr(error, 'problem', None) or 'unreadable'})") from None
+        raise InputError(
+            f"{path}{line}: is no YAML ({getattr(error, 'problem', None) or 'unreadable'})"
+        ) from None
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: is no YAML ({error})") from None
     if not isinstance(document, dict):
@@ -203,6 +211,7 @@ def only_yaml(path: text.File) -> Path:
     if len(there) != 1:
         found = "there is none" if not there else f"there are {', '.join(p.name for p in there)}"
         raise InputError(
-            f"{path}: its calibration is missing: expected one .yaml in {folder}, {found}; name it (config key `calibration`)"
+            f"{path}: its calibration is missing: expected one .yaml in {folder}, {found}; name it "
+            "(config key `calibration`)"
         )
     return there[0]

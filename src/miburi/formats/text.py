@@ -1,9 +1,11 @@
-"""What all text formats need: a file's bytes, its numbers at native speed, and where in it something is wrong."""
+"""What all text formats need: a file's bytes, its numbers at native speed, and where in it something is
+wrong."""
 
 from __future__ import annotations
 
 import gzip
 import os
+import re
 import zlib
 from pathlib import Path
 from typing import NoReturn
@@ -89,17 +91,27 @@ def shown(token: str | bytes, most: int = 40) -> str:
     return repr(text if len(text) <= most else text[: most - 1] + "…")
 
 
+_REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+
+
+def real(token: str | bytes) -> float | None:
+    """A finite number as recordings write it; None for anything else (nan, inf, 1_000, 0x10, 1,5 …)."""
+    written = token if isinstance(token, str) else token.decode("latin-1")
+    value = float(written) if _REAL.fullmatch(written) else np.inf
+    return value if np.isfinite(value) else None
+
+
 # Powers of ten that a double holds exactly; a mantissa below 2^53 times or over one of them is rounded once,
 # hence rightly (Clinger, "How to read floating point numbers accurately", 1990).
 _TENS = np.array([10.0**k for k in range(23)])
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _scan(text, begin, columns, tens, values, starts, hard):  # type: ignore[no-untyped-def]
     """Parse blank-separated numbers.
 
-    Returns (count, hard ones, offset of the first token that is no number or stands in the wrong line, or −1).
-    A row may go over several lines, but must begin a line.
+    Returns (count, hard ones, offset of the first token that is no number or stands in the wrong line, or
+    −1). A row may go over several lines, but must begin a line.
     """
     n = len(text)
     i = begin
@@ -176,8 +188,8 @@ def _scan(text, begin, columns, tens, values, starts, hard):  # type: ignore[no-
 def numbers(path: File, data: bytes, begin: int, columns: int, what: str = "value") -> Floats:
     """The table of numbers that fills `data` from byte `begin` to its end.
 
-    Numbers are rounded rightly; a row begins on a line of its own and may go over several. The memory used is in
-    proportion to the text.
+    Numbers are rounded rightly; a row begins on a line of its own and may go over several. The memory used
+    is in proportion to the text.
 
     Parameters
     ----------
@@ -216,7 +228,9 @@ def numbers(path: File, data: bytes, begin: int, columns: int, what: str = "valu
         bad = hard[:doubtful][~np.isfinite(values[hard[:doubtful]])]
         if len(bad):
             at = int(starts[:doubtful][hard[:doubtful] == bad[0]][0])
-            raise InputError(f"{path}, line {line_of(data, at)}: {shown(_token(data, at))} is too large for a number")
+            raise InputError(
+                f"{path}, line {line_of(data, at)}: {shown(_token(data, at))} is too large for a number"
+            )
     return values[:count].reshape(-1, columns)
 
 
@@ -238,11 +252,7 @@ def _complain(path: File, data: bytes, begin: int, columns: int, wrong: int, wha
     for line in data[begin:].split(b"\n"):
         tokens = line.split()
         for token in tokens:
-            try:
-                good = bool(np.isfinite(float(token))) and b"_" not in token
-            except ValueError:
-                good = False
-            if not good:
+            if real(token) is None:
                 raise InputError(f"{path}, line {number}: {shown(token)} is not a finite number")
         if tokens and len(tokens) != columns:
             s = "" if len(tokens) == 1 else "s"

@@ -3,14 +3,15 @@
 A BVH file names no unit and no upward axis, so both are found by the body that it holds, and said (log, and
 `miburi.formats.inspect`); `unit` and `up` in the config come first.
 
-*Unit.* If a body is recognised (`miburi.conventions`), its stature (ankle, knee, hip, neck, head along the bones, as
-they stand in the recording) decides: centimetres if that makes it 0.75 to 2.6 m, else the one of metres, decimetres,
-1/0.45 inch (CMU), inches, centimetres and millimetres that brings it nearest to 1.35 m. A hand alone is treated
-the same, from the wrist to the middle fingertip: centimetres for 0.12 to 0.26 m, else nearest to 0.19 m. Anything
-else is taken as centimetres.
+*Unit.* If a body is recognised (`miburi.conventions`), its stature (ankle, knee, hip, neck, head along the
+bones, as they stand in the recording) decides: centimetres if that makes it 0.75 to 2.6 m, else the one of
+metres, decimetres, 1/0.45 inch (CMU), inches, centimetres and millimetres that brings it nearest to 1.35 m.
+A hand alone is treated the same, from the wrist to the middle fingertip: centimetres for 0.12 to 0.26 m,
+else nearest to 0.19 m. Anything else is taken as centimetres.
 
-*Up.* The axis along which the head is above the ankles in the recording. If that is not the same axis all the time
-(somebody lies down), it is the one along which the lowest joint keeps its height best. Without a body: y.
+*Up.* The axis along which the head is above the ankles in the recording. If that is not the same axis all
+the time (somebody lies down), it is the one along which the lowest joint keeps its height best. Without a
+body: y.
 """
 
 from __future__ import annotations
@@ -152,7 +153,9 @@ def turned(motion: Motion, up: str) -> Motion:
     skeleton = replace(s, offsets=s.offsets @ basis.T, end_offsets=s.end_offsets @ basis.T)
     rotations = np.concatenate([motion.rotations[..., :3] @ basis.T, motion.rotations[..., 3:]], axis=-1)
     moved = None if motion.translations is None else motion.translations @ basis.T
-    return replace(motion, skeleton=skeleton, root=motion.root @ basis.T, rotations=rotations, translations=moved)
+    return replace(
+        motion, skeleton=skeleton, root=motion.root @ basis.T, rotations=rotations, translations=moved
+    )
 
 
 def _body(skeleton: Skeleton, joints: Mapping[str, str] | None) -> dict[str, int] | None:
@@ -165,7 +168,8 @@ def _body(skeleton: Skeleton, joints: Mapping[str, str] | None) -> dict[str, int
 
 
 def _stature(places: Floats, j: Mapping[str, int]) -> float:
-    """Length of a body from the ankles to the head along its bones, median over frames, in the file's unit."""
+    """Length of a body from the ankles to the head along its bones, median over frames, in the file's
+    unit."""
 
     def bone(a: Floats, b: Floats) -> float:
         return float(np.median(np.linalg.norm(a - b, axis=-1)))
