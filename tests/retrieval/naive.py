@@ -39,3 +39,14 @@ def histogram(x):
 def coefficient(p, q):
     """Eq. (4), the root over both factors."""
     return sum(np.sqrt(a * b) for a, b in zip(p, q, strict=True))
+
+
+def dtw(x, y):
+    """Dynamic time warping by its recursion."""
+    best = np.full((len(x) + 1, len(y) + 1), np.inf)
+    best[0, 0] = 0
+    for i in range(len(x)):
+        for j in range(len(y)):
+            before = min(best[i, j], best[i, j + 1], best[i + 1, j])
+            best[i + 1, j + 1] = np.sum((x[i] - y[j]) ** 2) + before
+    return np.sqrt(best[-1, -1])

@@ -18,7 +18,9 @@ def moving(seed=0, frames=20, skeleton=PERSON, yaw=0.0):
     """A person whose joints all turn smoothly, trunk included."""
     rng = np.random.default_rng(seed)
     t = np.linspace(0, 2 * np.pi, frames)[:, None, None]
-    angles = 0.6 * np.sin(t * rng.uniform(0.2, 1.0, (1, len(skeleton), 3)) + rng.uniform(0, 6, (1, len(skeleton), 3)))
+    angles = 0.6 * np.sin(
+        t * rng.uniform(0.2, 1.0, (1, len(skeleton), 3)) + rng.uniform(0, 6, (1, len(skeleton), 3))
+    )
     q = Rotation.from_rotvec(angles.reshape(-1, 3)).as_quat().reshape(frames, len(skeleton), 4)
     turn = Rotation.from_euler("y", yaw)
     q[:, 0] = (turn * Rotation.from_quat(q[:, 0])).as_quat()
@@ -26,7 +28,9 @@ def moving(seed=0, frames=20, skeleton=PERSON, yaw=0.0):
 
 
 def scaled(skeleton, factors):
-    return Skeleton(skeleton.joints, skeleton.parents, skeleton.offsets * np.reshape(factors, (-1, 1)), "scaled")
+    return Skeleton(
+        skeleton.joints, skeleton.parents, skeleton.offsets * np.reshape(factors, (-1, 1)), "scaled"
+    )
 
 
 def column(name):
@@ -117,7 +121,9 @@ def test_people_of_all_sizes_are_one_figure():
     q = moving(2)
     assert np.abs(features(moving(2, skeleton=other), mapped=False) - features(q, mapped=False)).max() > 0.05
     limbs = [column(f"{s}_{j}_{a}") for s in "lr" for j in ("knee", "foot") for a in "xyz"]
-    np.testing.assert_allclose(features(moving(2, skeleton=other))[:, limbs], features(q)[:, limbs], atol=1e-6)
+    np.testing.assert_allclose(
+        features(moving(2, skeleton=other))[:, limbs], features(q)[:, limbs], atol=1e-6
+    )
 
 
 def test_bones_keep_the_persons_lengths_and_the_recorded_directions():
@@ -125,15 +131,23 @@ def test_bones_keep_the_persons_lengths_and_the_recorded_directions():
     motion = moving(8, skeleton=scaled(PERSON, factors))
     x = features(motion).reshape(len(motion), 14, 3)[:, :13]
     own = features(motion, mapped=False).reshape(len(motion), 14, 3)[:, :13]
-    for a, b, length in (("l_shoulder", "l_elbow", 0.30), ("r_knee", "r_foot", 0.42), ("r_elbow", "r_hand", 0.26)):
+    for a, b, length in (
+        ("l_shoulder", "l_elbow", 0.30),
+        ("r_knee", "r_foot", 0.42),
+        ("r_elbow", "r_hand", 0.26),
+    ):
         i, j = BODY_JOINTS.index(a), BODY_JOINTS.index(b)
         bone, recorded = x[:, j] - x[:, i], own[:, j] - own[:, i]
         np.testing.assert_allclose(np.linalg.norm(bone, axis=1), length, atol=1e-5)
-        np.testing.assert_allclose(bone / length, recorded / np.linalg.norm(recorded, axis=1)[:, None], atol=1e-4)
+        np.testing.assert_allclose(
+            bone / length, recorded / np.linalg.norm(recorded, axis=1)[:, None], atol=1e-4
+        )
 
 
 def test_angles_are_weighed():
-    np.testing.assert_allclose(features(moving(1), angle_weight=0.6)[:, 39:], 2 * features(moving(1))[:, 39:], atol=1e-6)
+    np.testing.assert_allclose(
+        features(moving(1), angle_weight=0.6)[:, 39:], 2 * features(moving(1))[:, 39:], atol=1e-6
+    )
     with pytest.raises(InputError, match="angle_weight is 0"):
         features(moving(1), angle_weight=0)
 
@@ -145,7 +159,7 @@ def test_no_frames_give_no_values():
 def test_a_missing_joint_is_named():
     names_ = tuple("pelvis" if j == "l_knee" else j for j in PERSON.joints)
     odd = Skeleton(names_, PERSON.parents, PERSON.offsets, "odd")
-    with pytest.raises(InputError, match="l_knee.*r_knee"):
+    with pytest.raises(InputError, match=r"l_knee.*r_knee"):
         features(moving(skeleton=odd))
 
 

@@ -8,8 +8,9 @@ from scipy.linalg import subspace_angles
 
 from miburi.errors import InputError
 from miburi.retrieval import Index, Ranking, measures, merge
-from miburi.retrieval.index import _draw, ranking
+from miburi.retrieval.index import _draw
 from miburi.retrieval.jvh import bhattacharyya, jvh
+from miburi.retrieval.ranking import ranking
 from miburi.retrieval.subspace import fit
 
 from . import naive
@@ -30,7 +31,11 @@ def takes(seed=0, count=4, frames=300, width=42):
 
 def cut(features, length=50, step=50):
     # pieces that share no frame: two that share their worst frame are equally far
-    return [(f"take{i}", i, a, a + length) for i, x in enumerate(features) for a in range(0, len(x) - length + 1, step)]
+    return [
+        (f"take{i}", i, a, a + length)
+        for i, x in enumerate(features)
+        for a in range(0, len(x) - length + 1, step)
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -94,6 +99,22 @@ def test_msm_is_the_mean_of_the_canonical_angles(features, segments, query, inde
         assert got[s] == pytest.approx(1 - np.mean(np.cos(subspace_angles(h.T, q.T)) ** 2), abs=1e-7)
 
 
+def test_dtw_is_the_cheapest_path(features, query):
+    segments = [("take0", 0, 0, 30), ("take0", 0, 7, 8), ("take1", 1, 100, 200), ("take2", 2, 0, 2)]
+    index = Index.build(features, segments, dims=DIMS, samples=None)
+    for x in (query[:40], query[:1]):
+        want = [naive.dtw(x.astype(np.float64), frames_of(features, s)) for s in segments]
+        np.testing.assert_allclose(index.distances(x, "DTW"), want, rtol=1e-12)
+
+
+def test_dtw_agrees_with_dtaidistance(features, segments, query):
+    dtw_ndim = pytest.importorskip("dtaidistance.dtw_ndim")
+    index = Index.build(features, segments, dims=DIMS, samples=None)
+    x = query.astype(np.float64)
+    want = [dtw_ndim.distance(x, frames_of(features, s)) for s in segments]
+    np.testing.assert_allclose(index.distances(query, "DTW"), want, rtol=1e-6)
+
+
 def test_mean_pose_is_the_distance_of_the_means(features, segments, query, index):
     want = [np.linalg.norm(frames_of(features, s).mean(0) - query.astype(float).mean(0)) for s in segments]
     np.testing.assert_allclose(index.distances(query, "mean pose"), want, atol=1e-9)
@@ -150,7 +171,9 @@ class TestEveryMeasure:
             np.testing.assert_array_equal(some.score, whole.score[:k])
 
     def test_shards_merge_to_the_whole(self, features, segments, query, index, measure):
-        shards = [Index.build(features, segments[a:b], dims=DIMS) for a, b in ((0, 5), (5, 6), (6, len(segments)))]
+        shards = [
+            Index.build(features, segments[a:b], dims=DIMS) for a, b in ((0, 5), (5, 6), (6, len(segments)))
+        ]
         merged = merge([s.rank(query, measure, 6) for s in shards], [len(s) for s in shards], 6)
         whole = index.rank(query, measure, 6)
         np.testing.assert_array_equal(merged.order, whole.order)
@@ -158,13 +181,17 @@ class TestEveryMeasure:
 
     def test_the_same_query_gives_the_same_ranking(self, features, segments, query, index, measure):
         again = Index.build(features, segments, dims=DIMS)
-        np.testing.assert_array_equal(again.rank(query, measure).score, index.rank(query.copy(), measure).score)
+        np.testing.assert_array_equal(
+            again.rank(query, measure).score, index.rank(query.copy(), measure).score
+        )
 
     def test_moving_everything_alike_changes_no_order(self, features, segments, query, measure):
         shift = np.random.default_rng(2).normal(size=42)
         a = Index.build(features, segments, dims=DIMS, samples=None)
         b = Index.build([x + shift for x in features], segments, dims=DIMS, samples=None)
-        np.testing.assert_allclose(a.distances(query, measure), b.distances(query + shift, measure), atol=1e-4)
+        np.testing.assert_allclose(
+            a.distances(query, measure), b.distances(query + shift, measure), atol=1e-4
+        )
 
     def test_bad_queries_are_refused(self, query, index, measure):
         for bad, sentence in (
@@ -190,7 +217,9 @@ class TestEveryMeasure:
 
 @pytest.mark.parametrize("measure", ["MSM", "MSM+Jvh"])
 def test_msm_does_not_see_where_the_query_is(query, index, measure):
-    np.testing.assert_allclose(index.distances(query, measure), index.distances(query + 0.5, measure), atol=1e-6)
+    np.testing.assert_allclose(
+        index.distances(query, measure), index.distances(query + 0.5, measure), atol=1e-6
+    )
 
 
 def test_a_query_in_the_same_place_is_nearer_to_dspm(features, segments, index):
@@ -207,7 +236,9 @@ def test_bounds_lose_none_of_the_first(seed, k, samples, far):
     x, segments, at = [], [], 0
     for _ in range(30):
         n = int(rng.integers(1, 15))
-        moves = rng.normal(0, 10.0 ** rng.uniform(-4, 0), (n, 2)) @ rng.normal(size=(2, 6)) * rng.integers(0, 2)
+        moves = (
+            rng.normal(0, 10.0 ** rng.uniform(-4, 0), (n, 2)) @ rng.normal(size=(2, 6)) * rng.integers(0, 2)
+        )
         x.append(centres[rng.integers(4)] + moves + rng.normal(0, 1e-3, (n, 6)) * rng.integers(0, 2))
         segments.append(("a", 0, at, at + n))
         at += n
@@ -263,7 +294,7 @@ def test_drawn_frames_are_frames_without_repeats_in_order():
 
 @pytest.mark.parametrize("samples", [None, 50, 3])
 def test_an_index_read_again_ranks_alike(tmp_path, features, segments, query, samples):
-    index = Index.build(features, segments[:-1] + [("take0", 0, 3, 6)], dims=DIMS, samples=samples, seed=9)
+    index = Index.build(features, [*segments[:-1], ("take0", 0, 3, 6)], dims=DIMS, samples=samples, seed=9)
     index.save(tmp_path / "a.h5", {"x": "0"})
     index.save(tmp_path / "b.h5", {"x": "0"})
     assert (tmp_path / "a.h5").read_bytes() == (tmp_path / "b.h5").read_bytes()
@@ -285,7 +316,8 @@ def test_the_layout_on_disk(tmp_path, index):
         assert file.attrs["format"] == "miburi/index"
         assert (file.attrs["dims"], file.attrs["samples"], file.attrs["seed"]) == (5, 50, 0)
     assert shapes == {
-        "take": (s,), "start": (s,), "end": (s,), "mean": (s, 42), "basis": (s, 5, 42), "samples": (s, 50, 42), "jvh": (s, 42),
+        "take": (s,), "start": (s,), "end": (s,), "mean": (s, 42), "basis": (s, 5, 42), "samples": (s, 50,
+        42), "jvh": (s, 42),
     }  # fmt: skip
 
 
@@ -330,7 +362,7 @@ def test_bad_features_and_settings_are_refused(features, query, index):
         Index.build([features[0], features[1][:, :7]], [("a", 0, 0, 9)])
     with pytest.raises(InputError, match="0 dimensions"):
         Index.build(features, [("a", 0, 0, 9)], dims=0)
-    with pytest.raises(InputError, match="no measure 'DSPM'; there are mean pose"):
+    with pytest.raises(InputError, match="no measure 'DSPM'; there are DTW, mean pose"):
         index.rank(query, "DSPM")
     with pytest.raises(InputError, match="reduction"):
         index.rank(query, "SM(PCA)", reduction="median")

@@ -21,7 +21,9 @@ def performing(parts, fps=60.0, yaw=0.0, seed=0, seconds=5.0):
     angles = np.zeros((len(t), 14, 3))
     for k, joints in enumerate(parts):
         # half a second from one motion into the next
-        weight = np.clip((t - k * seconds) / 0.5 + 0.5, 0, 1) * np.clip(((k + 1) * seconds - t) / 0.5 + 0.5, 0, 1)
+        weight = np.clip((t - k * seconds) / 0.5 + 0.5, 0, 1) * np.clip(
+            ((k + 1) * seconds - t) / 0.5 + 0.5, 0, 1
+        )
         for i, joint in enumerate(joints):
             swing = np.sin(2 * np.pi * (1.1 + 0.1 * i) * t + rng.uniform(0, 6)) + 0.1 * np.sin(1.3 * t + i)
             angles[:, PERSON.index(joint), 0] += weight * 0.9 * swing
@@ -107,7 +109,16 @@ def test_the_pca_variant_finds_a_simulated_change():
 
 
 @pytest.mark.parametrize(
-    "settings", [{"variance": 1.0}, {"variance": 0}, {"rise": 1}, {"window_s": 0}, {"ahead_s": -1}, {"step_s": 0}, {"method": "SVD"}]
+    "settings",
+    [
+        {"variance": 1.0},
+        {"variance": 0},
+        {"rise": 1},
+        {"window_s": 0},
+        {"ahead_s": -1},
+        {"step_s": 0},
+        {"method": "SVD"},
+    ],
 )
 def test_settings_out_of_range_are_refused(settings):
     with pytest.raises(InputError):

@@ -1,7 +1,8 @@
-"""Search by motion ([P]): cut takes into segments, describe frames by 42 values, rank segments for a query."""
+"""Search by motion ([P]): takes are cut into segments, frames become 42 values, segments are ranked."""
 
 from miburi.retrieval.body import features, names, reset_yaw
-from miburi.retrieval.index import Index, Ranking, measures, merge
+from miburi.retrieval.index import Index, measures
+from miburi.retrieval.ranking import Ranking, merge
 from miburi.retrieval.segmentation import pieces, ppca_curve, segment
 
 __all__ = [

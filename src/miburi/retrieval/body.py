@@ -1,4 +1,4 @@
-"""The 42 values of a frame: where thirteen joints are in a body-centred frame, and how the trunk is turned ([P])."""
+"""The 42 values of a frame: thirteen joints in a body-centred frame, and how the trunk is turned ([P])."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def names() -> list[str]:
 
 
 def _on_person(places: dict[str, Floats], frame: Floats) -> dict[str, Floats]:
-    """The places, in the trunk's frame, of PERSON's joints when its bones point as those of the person recorded."""
+    """Where PERSON's joints are in the trunk's frame when its bones point as those of the person recorded."""
     mapped = {"waist": np.zeros((len(frame), 3))}
     for parent, child in _BONES:
         offset = PERSON.offsets[PERSON.index(child)]
@@ -48,20 +48,20 @@ def features(
     motion
         A person or a puppet.
     joints
-        Canonical name (`waist` or one of `figures.BODY_JOINTS`) → name in this skeleton, where the tables of naming
-        conventions do not know it.
+        Canonical name (`waist` or one of `figures.BODY_JOINTS`) → name in this skeleton, where the tables of
+        naming conventions do not know it.
     angle_weight
         Metres that one radian of the trunk's angles counts.
     mapped
-        Bones keep their directions but take the lengths of `figures.PERSON`, so that people of all sizes and the
-        puppet are one figure; False: everybody's own skeleton.
+        Bones keep their directions but take the lengths of `figures.PERSON`, so that people of all sizes and
+        the puppet are one figure; False: everybody's own skeleton.
 
     Returns
     -------
     (T, 42) float32
         Metres: x (to the person's left), y (up the trunk), z (forward) from the waist of the 13 joints of
-        `figures.BODY_JOINTS`; then yaw, pitch and roll of the trunk times `angle_weight`. Yaw is counted from the
-        first frame and continuous. `names` lists the columns.
+        `figures.BODY_JOINTS`; then yaw, pitch and roll of the trunk times `angle_weight`. Yaw is counted from
+        the first frame and continuous. `names` lists the columns.
 
     Raises
     ------
@@ -70,8 +70,8 @@ def features(
 
     Notes
     -----
-    [P], section on preprocessing. With pitch near ±90° (lying) yaw and roll are not separately defined, as on any
-    device that reports these angles.
+    [P], section on preprocessing. With pitch near ±90° (lying) yaw and roll are not separately defined, as on
+    any device that reports these angles.
     """
     if not (np.isfinite(angle_weight) and angle_weight > 0):
         raise InputError(f"angle_weight is {angle_weight}, expected a positive number of metres per radian")
@@ -97,9 +97,10 @@ def features(
 def reset_yaw(x: ArrayLike, pieces: ArrayLike | None = None) -> NDArray[np.float32]:
     """Count the yaw of each piece from the piece's own mean.
 
-    A puppet knows no north, and a person may perform the same motion in any direction. The mean is used, not the
-    first frame, because a piece may begin a little earlier or later and its first frame is one noisy value, while a
-    turn of the same size has the same shape about its mean. A query is one piece and gets the same treatment.
+    A puppet knows no north, and a person may perform the same motion in any direction. The mean is used, not
+    the first frame, because a piece may begin a little earlier or later and its first frame is one noisy
+    value, while a turn of the same size has the same shape about its mean. A query is one piece and gets the
+    same treatment.
 
     Parameters
     ----------
@@ -126,7 +127,10 @@ def reset_yaw(x: ArrayLike, pieces: ArrayLike | None = None) -> NDArray[np.float
         return out
     order = spans[np.argsort(spans[:, 0], kind="stable")]
     if len(order) and (
-        order[0, 0] < 0 or order[-1, 1] > len(out) or (order[:, 0] >= order[:, 1]).any() or (order[1:, 0] < order[:-1, 1]).any()
+        order[0, 0] < 0
+        or order[-1, 1] > len(out)
+        or (order[:, 0] >= order[:, 1]).any()
+        or (order[1:, 0] < order[:-1, 1]).any()
     ):
         raise InputError(f"pieces must be non-empty, apart and inside the {len(out)} frames")
     for start, end in order:

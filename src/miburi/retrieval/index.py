@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,10 +15,12 @@ from miburi import store
 from miburi.errors import InputError
 from miburi.motion import Floats
 from miburi.retrieval import nearest, subspace
+from miburi.retrieval.dtw import dtw
 from miburi.retrieval.jvh import bhattacharyya, jvh
+from miburi.retrieval.ranking import Ranking, ranking
 
 _PLAIN = ("mean pose", "SM(PCA)", "MSM", "DSPM(PCA)")
-_MEASURES = (*_PLAIN, *(f"{name}+Jvh" for name in _PLAIN[1:]))
+_MEASURES = ("DTW", *_PLAIN, *(f"{name}+Jvh" for name in _PLAIN[1:]))
 
 
 def measures() -> tuple[str, ...]:
@@ -25,66 +28,8 @@ def measures() -> tuple[str, ...]:
     return _MEASURES
 
 
-@dataclass(frozen=True, eq=False)
-class Ranking:
-    """Segments by their distance from a query.
-
-    Parameters
-    ----------
-    order : (k,) int64
-        Indices of segments, nearest first; equal distances by index.
-    score : (k,) float64
-        Distance of segment `order[i]`; smaller is nearer.
-    """
-
-    order: NDArray[np.int64]
-    score: Floats
-
-    def __len__(self) -> int:
-        return len(self.order)
-
-
-def ranking(score: ArrayLike, k: int | None = None) -> Ranking:
-    """The k smallest of the segments' distances (all, if k is None), equal ones by index.
-
-    Raises
-    ------
-    InputError
-        k is less than 1.
-    """
-    values = np.asarray(score, dtype=np.float64)
-    if k is not None and k < 1:
-        raise InputError(f"the first {k} segments are wanted, expected at least 1")
-    if k is None or k >= len(values):
-        order = np.argsort(values, kind="stable")
-    else:
-        # all that are no worse than the k-th, so that ties at the limit are decided by index too
-        near = np.flatnonzero(values <= np.partition(values, k - 1)[k - 1])
-        order = near[np.argsort(values[near], kind="stable")][:k]
-    return Ranking(order.astype(np.int64), values[order])
-
-
-def merge(rankings: Sequence[Ranking], sizes: Sequence[int], k: int | None = None) -> Ranking:
-    """One ranking of several indices that lie one after the other (shards).
-
-    Parameters
-    ----------
-    rankings
-        One per shard, each of at least its first k.
-    sizes
-        Number of segments of each shard.
-    k
-        How many to keep; None: all that are there.
-    """
-    shift = np.concatenate([[0], np.cumsum(sizes)])[:-1]
-    order = np.concatenate([r.order + s for r, s in zip(rankings, shift, strict=True)])
-    score = np.concatenate([r.score for r in rankings])
-    best = np.lexsort((order, score))[: len(order) if k is None else k]
-    return Ranking(order[best].astype(np.int64), score[best])
-
-
 def _draw(x: Floats, samples: int | None, *name: object) -> Floats:
-    """K frames at random without repeats, in time's order; all of them, evenly repeated, where there are fewer."""
+    """K frames at random without repeats, in time's order; where there are fewer, all, evenly repeated."""
     n = len(x)
     if samples is None:
         return x
@@ -101,7 +46,9 @@ def _checked(x: ArrayLike, width: int | None, what: str) -> Floats:
     if len(frames) == 0:
         raise InputError(f"{what} has no frames")
     if not np.isfinite(frames).all():
-        raise InputError(f"{what}, frame {int(np.argwhere(~np.isfinite(frames))[0][0])}: a number is not finite")
+        raise InputError(
+            f"{what}, frame {int(np.argwhere(~np.isfinite(frames))[0][0])}: a number is not finite"
+        )
     return frames
 
 
@@ -142,7 +89,7 @@ class Index:
     @cached_property
     def _blocks(self) -> Floats:
         # values before frames: the kernels' inner loop runs over frames that lie side by side
-        spans = zip(self.offsets[:-1], self.offsets[1:], strict=True)
+        spans = pairwise(self.offsets)
         return np.concatenate([self.frames[a:b].T.ravel() for a, b in spans]).astype(np.float64)
 
     @cached_property
@@ -199,7 +146,9 @@ class Index:
         mean, basis, histogram, drawn = [], [], [], []
         for name, i, start, end in segments:
             if not (0 <= i < len(takes) and 0 <= start < end <= len(takes[i])):
-                raise InputError(f"take {name!r}: the segment from frame {start} to {end} is empty or outside the take")
+                raise InputError(
+                    f"take {name!r}: the segment from frame {start} to {end} is empty or outside the take"
+                )
             x = takes[i][start:end]
             m, b = subspace.fit(x, dims)
             mean.append(m)
@@ -224,7 +173,9 @@ class Index:
         """Dimensions of the subspaces."""
         return int(self.basis.shape[1])
 
-    def rank(self, x: ArrayLike, measure: str = "DSPM(PCA)", k: int | None = None, *, reduction: str = "max") -> Ranking:
+    def rank(
+        self, x: ArrayLike, measure: str = "DSPM(PCA)", k: int | None = None, *, reduction: str = "max"
+    ) -> Ranking:
         """Rank the segments by their distance from a query.
 
         Parameters
@@ -236,12 +187,14 @@ class Index:
         k
             How many to return; None: all.
         reduction
-            How SM reduces over the query's frames, "max" or "mean" (not printed in [P]); other measures ignore it.
+            How SM reduces over the query's frames, "max" or "mean" (not printed in [P]); other measures
+            ignore it.
 
         Returns
         -------
         Ranking
-            Nearest first. The same query gives the same ranking: its frames are drawn by a seed from its content.
+            Nearest first. The same query gives the same ranking: its frames are drawn by a seed from its
+            content.
 
         Raises
         ------
@@ -262,15 +215,19 @@ class Index:
         SM
             max_n Err(H, x_n), metres (eq. 1): the segment's subspace and the query's frames.
         MSM
-            1 − Σ cos² θ_i / M over the canonical angles θ_i of the two subspaces, M the number of dimensions in
-            which the query varies: the mean of all angles, because the first alone is near 0 for most pairs of body
-            motions. 0: the query's subspace lies within the segment's.
+            1 − Σ cos² θ_i / M over the canonical angles θ_i of the two subspaces, M the number of dimensions
+            in which the query varies: the mean of all angles, because the first alone is near 0 for most
+            pairs of body motions. 0: the query's subspace lies within the segment's.
+        DTW
+            Root of the smallest sum of squared distances along a warping path through the frames drawn from
+            each side in time's order; through whole sequences, as in [P], where the index keeps all frames
+            (`samples=None`).
         mean pose
             Distance of the two means, metres. A naive measure, to compare with.
         …+Jvh
-            The distance times the Hellinger distance √(1 − B) of the histograms of movement, B their Bhattacharyya
-            coefficient (eqs. 3, 4). [P] does not print its rule; this one was the best of seven products on
-            development queries.
+            The distance times the Hellinger distance √(1 − B) of the histograms of movement, B their
+            Bhattacharyya coefficient (eqs. 3, 4). [P] does not print its rule; this one was the best of seven
+            products on development queries.
         """
         if measure not in _MEASURES:
             raise InputError(f"there is no measure {measure!r}; there are {', '.join(_MEASURES)}")
@@ -278,8 +235,11 @@ class Index:
             raise InputError(f"reduction is {reduction!r}, expected 'max' or 'mean'")
         query = self._query(x)
         plain = measure.removesuffix("+Jvh")
-        if plain == "mean pose":
-            distance: Floats = np.sqrt(np.square(self.mean - query.mean(axis=0)).sum(axis=1))
+        distance: Floats
+        if plain == "DTW":
+            distance = dtw(self._drawn(query), self._blocks, self.offsets)
+        elif plain == "mean pose":
+            distance = np.sqrt(np.square(self.mean - query.mean(axis=0)).sum(axis=1))
         else:
             distance = self._subspace_distances(query, plain, reduction == "mean")
         if measure.endswith("+Jvh"):
@@ -297,7 +257,7 @@ class Index:
         return _draw(query, self.samples, self.seed, "query", query.sum(axis=0).tobytes().hex())
 
     def _first(self, query: Floats, k: int, measure: str) -> Floats | None:
-        """Distances of the first k (and ties), infinity for segments that cannot be among them; None: no short cut."""
+        """Distances of the first k and ties, infinity for the rest; None: there is no short cut."""
         plain, with_jvh = measure.removesuffix("+Jvh"), measure.endswith("+Jvh")
         if plain not in ("DSPM(PCA)", "MSM") or k >= len(self):
             return None
@@ -308,22 +268,29 @@ class Index:
         factor = nearest.factor_below(self._roots, histogram) if with_jvh else np.ones(len(self))
         if plain == "MSM":
             least = nearest.msm_below(self._coarse, basis) * factor
-            return nearest.msm_first(least, self._roots if with_jvh else None, histogram, k, self.basis, basis)
+            return nearest.msm_first(
+                least, self._roots if with_jvh else None, histogram, k, self.basis, basis
+            )
         drawn = self._drawn(query)
         least = nearest.dspm_below(self._coarse, drawn, mean, basis) * factor
-        block, root = np.ascontiguousarray(drawn.T), np.sqrt(histogram)
-        segments = (self.mean, self.basis, self._blocks, self.offsets)
-        found: Floats = nearest.dspm_first(least, self._roots, root, with_jvh, k, block, *segments, mean, basis)
-        return found
+        segments = nearest.Segments(self._roots, self.mean, self.basis, self._blocks, self.offsets)
+        seen = nearest.Query(np.ascontiguousarray(drawn.T), mean, basis, np.sqrt(histogram))
+        return nearest.dspm_first(least, with_jvh, k, segments, seen)
 
     def _subspace_distances(self, query: Floats, measure: str, mean_not_max: bool) -> Floats:
         mean, basis = subspace.fit(query, self.dims)
         if measure == "MSM":
             rank = int(basis.any(axis=1).sum())
             # a query that stands still has no subspace: all segments are equally far
-            return np.maximum(1.0 - subspace.shared(self._bases_side_by_side, basis) / rank, 0.0) if rank else np.ones(len(self))
+            return (
+                np.maximum(1.0 - subspace.shared(self._bases_side_by_side, basis) / rank, 0.0)
+                if rank
+                else np.ones(len(self))
+            )
         block = np.ascontiguousarray(self._drawn(query).T)
-        to: Floats = subspace.frames_to_subspaces(block, self.mean, self.basis, mean_not_max and measure == "SM(PCA)")
+        to: Floats = subspace.frames_to_subspaces(
+            block, self.mean, self.basis, mean_not_max and measure == "SM(PCA)"
+        )
         if measure == "SM(PCA)":
             return to
         back: Floats = subspace.samples_to_subspace(self._blocks, self.offsets, mean, basis)
@@ -332,7 +299,8 @@ class Index:
     def save(self, path: str | os.PathLike[str], sources: Mapping[str, str] | None = None) -> None:
         """Write the index ("miburi/index"), with the digests of what it was made from.
 
-        `samples` is (S, K, D); with all frames kept it is (N, D) and `offsets` (S + 1) says where segments begin.
+        `samples` is (S, K, D); with all frames kept it is (N, D) and `offsets` (S + 1) says where segments
+        begin.
         """
         with store.create(path, "index", sources) as file:
             store.put(file, "take", list(self.take))
@@ -360,7 +328,9 @@ class Index:
             try:
                 dims, samples, seed = (int(file.attrs[a]) for a in ("dims", "samples", "seed"))
             except KeyError:
-                raise InputError(f"{path}: an attribute is missing, expected dims, samples and seed") from None
+                raise InputError(
+                    f"{path}: an attribute is missing, expected dims, samples and seed"
+                ) from None
             take = store.get_strings(file, "take")
             s = len(take)
             mean = store.get(file, "mean", (s, None))
@@ -369,9 +339,14 @@ class Index:
                 frames = store.get(file, "samples", (s, samples, width)).reshape(-1, width)
                 offsets = np.arange(s + 1, dtype=np.int64) * samples
             else:
-                frames, offsets = store.get(file, "samples", (None, width)), store.get(file, "offsets", (s + 1,))
+                frames, offsets = (
+                    store.get(file, "samples", (None, width)),
+                    store.get(file, "offsets", (s + 1,)),
+                )
                 if offsets[0] != 0 or offsets[-1] != len(frames) or (np.diff(offsets) < 1).any():
-                    raise InputError(f"{path}: /offsets do not cut the {len(frames)} frames into {s} segments")
+                    raise InputError(
+                        f"{path}: /offsets do not cut the {len(frames)} frames into {s} segments"
+                    )
             return cls(
                 tuple(take),
                 store.get(file, "start", (s,)),

@@ -40,14 +40,14 @@ def bhattacharyya(roots: ArrayLike, q: ArrayLike) -> Floats:
     Returns
     -------
     (S,) float64
-        Σ_i √(p_i q_i), 0 to 1 ([P], eq. 4, whose print leaves q_i outside the root). Two that do not move at all
-        are alike: 1.
+        Σ_i √(p_i q_i), 0 to 1 ([P], eq. 4, whose print leaves q_i outside the root). Two that do not move at
+        all are alike: 1.
     """
     similar: Floats = overlap(np.asarray(roots, dtype=np.float64), np.sqrt(np.asarray(q, dtype=np.float64)))
     return similar
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def overlap(roots, root):  # type: ignore[no-untyped-def]
     """`bhattacharyya` of square roots: roots (S, D), root (D,); returns (S,)."""
     out = np.empty(len(roots))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -14,8 +15,8 @@ from miburi.errors import InputError
 from miburi.figures import BODY_JOINTS
 from miburi.motion import Floats, Motion
 
-# Variance of a quaternion component below which nothing counts as motion: (0.016)² is about two degrees. Without it a
-# person who stands still is a model that every later frame leaves at once.
+# Variance of a quaternion component below which nothing counts as motion: (0.016)² is about two degrees.
+# Without it a person who stands still is a model that every later frame leaves at once.
 _NOISE = 2.5e-4
 
 Cuts = NDArray[np.int64]
@@ -34,9 +35,9 @@ def pose(motion: Motion, joints: Mapping[str, str] | None = None) -> Floats:
     Returns
     -------
     (T, 4 M) float64
-        Quaternions, continuous in sign, of the M joints whose rotation moves one of `figures.BODY_JOINTS` (so no
-        wrists, fingers, ankles or head) and that turn at all. What lies at or above the waist counts as one,
-        freed of its yaw.
+        Quaternions, continuous in sign, of the M joints whose rotation moves one of `figures.BODY_JOINTS` (so
+        no wrists, fingers, ankles or head) and that turn at all. What lies at or above the waist counts as
+        one, freed of its yaw.
     """
     if len(motion) == 0:
         return np.zeros((0, 0))
@@ -63,13 +64,13 @@ def _line(parents: NDArray[np.int32], joint: int) -> list[int]:
 
 
 def _tilt(turn: Rotation) -> Floats:
-    """Quaternions (T, 4) of how the body has tilted since the first frame, seen from the body; turning about the
-    vertical is left out."""
+    """How the body has tilted since the first frame, seen from the body, without turns about the vertical."""
     since = (turn * turn[0].inv()).as_quat()
     # swing-twist: the twist about y is (0, y, 0, w) made unit; half a turn about a level axis has none
     twist = since * [0.0, 1.0, 0.0, 1.0]
     twist[np.linalg.norm(twist, axis=1) < 1e-9] = [0.0, 0.0, 0.0, 1.0]
-    return (turn[0].inv() * Rotation.from_quat(twist).inv() * turn).as_quat()
+    tilt: Floats = (turn[0].inv() * Rotation.from_quat(twist).inv() * turn).as_quat()
+    return tilt
 
 
 def ppca_curve(
@@ -100,8 +101,10 @@ def ppca_curve(
     return np.array([k for k, _ in curve], dtype=np.int64), np.array([h for _, h in curve])
 
 
-def _growing(x: Floats, start: int, window: int, ahead: int, step: int, variance: float) -> Iterator[tuple[int, float]]:
-    """Values (frame, H) of `ppca_curve`, one after the other, as long as the look-ahead is inside the take."""
+def _growing(
+    x: Floats, start: int, window: int, ahead: int, step: int, variance: float
+) -> Iterator[tuple[int, float]]:
+    """Values (frame, H) of `ppca_curve` one after the other, while the look-ahead is inside the take."""
     end, n = start + window, window
     if end + ahead > len(x):
         return
@@ -124,7 +127,7 @@ def _growing(x: Floats, start: int, window: int, ahead: int, step: int, variance
 
 
 def _next_cut(curve: Iterator[tuple[int, float]], rise: float, hold: int) -> int | None:
-    """The first peak that stands `rise` times above the valley before it and is not passed within `hold` frames."""
+    """The first peak `rise` times as high as the valley before it that is not passed within `hold` frames."""
     valley, peak, where = np.inf, 0.0, -1
     for frame, distance in curve:
         if where < 0:
@@ -156,8 +159,8 @@ def segment(
     motion
         A take.
     method
-        "PPCA": the distribution of the frames ahead leaves that of the frames since the last cut. "PCA": the error
-        of projecting onto the subspace of the first frames rises faster than it did.
+        "PPCA": the distribution of the frames ahead leaves that of the frames since the last cut. "PCA": the
+        error of projecting onto the subspace of the first frames rises faster than it did.
     variance
         Share of the variance that the subspace keeps (τ).
     window_s
@@ -167,8 +170,8 @@ def segment(
     step_s
         Seconds between two tests.
     rise
-        PPCA: a cut is made at a peak of H that is at least so many times the valley before it (R). The ratio, not
-        the difference, because H of a lively and of a quiet motion differ by orders of magnitude.
+        PPCA: a cut is made at a peak of H that is at least so many times the valley before it (R). The ratio,
+        not the difference, because H of a lively and of a quiet motion differ by orders of magnitude.
     joints
         As in `features`.
 
@@ -184,13 +187,15 @@ def segment(
 
     References
     ----------
-    J. Barbič et al., Segmenting motion capture data into distinct behaviors, Graphics Interface 2004, sections 3.1
-    and 3.2.
+    J. Barbič et al., Segmenting motion capture data into distinct behaviors, Graphics Interface 2004,
+    sections 3.1 and 3.2.
     """
     if method not in ("PPCA", "PCA"):
         raise InputError(f"segmentation method {method!r}, expected 'PPCA' or 'PCA'")
     if not 0 < variance < 1 or not rise > 1:
-        raise InputError(f"variance {variance} and rise {rise}, expected a share between 0 and 1 and a factor above 1")
+        raise InputError(
+            f"variance {variance} and rise {rise}, expected a share between 0 and 1 and a factor above 1"
+        )
     if min(window_s, ahead_s, step_s) <= 0:
         raise InputError("window_s, ahead_s and step_s must be positive")
     window, ahead, step = (max(1, round(s * motion.fps)) for s in (window_s, ahead_s, step_s))
@@ -246,8 +251,8 @@ def pieces(cuts: ArrayLike, frames: int, shortest: int = 1) -> NDArray[np.int64]
     frames
         Length of the take, T.
     shortest
-        Frames. As long as a piece is shorter, the shortest one (the first of equals) is joined to the shorter of
-        its neighbours (the one before it, if equal): it was probably cut from there.
+        Frames. As long as a piece is shorter, the shortest one (the first of equals) is joined to the shorter
+        of its neighbours (the one before it, if equal): it was probably cut from there.
 
     Returns
     -------
@@ -261,7 +266,7 @@ def pieces(cuts: ArrayLike, frames: int, shortest: int = 1) -> NDArray[np.int64]
     """
     inner = np.asarray(cuts, dtype=np.int64).reshape(-1)
     bounds = [0, *inner.tolist(), frames]
-    if frames < 1 or any(a >= b for a, b in zip(bounds[:-1], bounds[1:], strict=True)):
+    if frames < 1 or any(a >= b for a, b in pairwise(bounds)):
         raise InputError(f"cuts {inner.tolist()} do not increase inside a take of {frames} frames")
     while len(bounds) > 2:
         length = np.diff(bounds)

@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 
 from miburi.motion import Floats
 
-# A direction in which frames differ by less (root of the mean square, metres) is rounding of float32, not motion.
+# A direction in which frames differ by less (root of the mean square, metres) is rounding of float32, not
+# motion.
 _STILL = 1e-6
 
 
@@ -26,8 +27,9 @@ def fit(x: ArrayLike, dims: int) -> tuple[Floats, Floats]:
     -------
     mean : (D,) float64
     basis : (dims, D) float64
-        Orthonormal rows, largest variance first, each with its largest component positive. Frames that vary in
-        fewer directions (n ≤ `dims`, or a pose held still) leave the last rows zero: such a row projects nothing.
+        Orthonormal rows, largest variance first, each with its largest component positive. Frames that vary
+        in fewer directions (n ≤ `dims`, or a pose held still) leave the last rows zero: such a row projects
+        nothing.
     """
     frames = np.asarray(x, dtype=np.float64)
     mean = frames.mean(axis=0)
@@ -42,7 +44,7 @@ def fit(x: ArrayLike, dims: int) -> tuple[Floats, Floats]:
     return mean, basis
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def residuals(block, mean, basis, total, along):  # type: ignore[no-untyped-def]
     """Fill total[:n] with Err² (eq. 1) of the frames in the columns of block (D, n)."""
     width, n = block.shape
@@ -67,7 +69,7 @@ def residuals(block, mean, basis, total, along):  # type: ignore[no-untyped-def]
             total[j] -= along[m, j] * along[m, j]
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def reduced(total, n, mean_not_max):  # type: ignore[no-untyped-def]
     """Largest or mean Err of the first n squares; rounding below zero is zero."""
     worst, added = 0.0, 0.0
@@ -77,7 +79,7 @@ def reduced(total, n, mean_not_max):  # type: ignore[no-untyped-def]
     return added / n if mean_not_max else np.sqrt(worst)
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def frames_to_subspaces(frames, means, bases, mean_not_max):  # type: ignore[no-untyped-def]
     """Err(H_s, x_n) over the query's frames for every segment s.
 
@@ -91,12 +93,12 @@ def frames_to_subspaces(frames, means, bases, mean_not_max):  # type: ignore[no-
     return out
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def samples_to_subspace(blocks, offsets, mean, basis):  # type: ignore[no-untyped-def]
     """max_n Err(Q, x^H_n) for every segment.
 
-    blocks: the segments' frames, each segment as a (D, n_s) block, end to end; offsets (S + 1,): first frame of each;
-    mean (D,) and basis (dims, D) of the query; returns (S,).
+    blocks: the segments' frames, each segment as a (D, n_s) block, end to end; offsets (S + 1,): first frame
+    of each; mean (D,) and basis (dims, D) of the query; returns (S,).
     """
     s, width, dims = len(offsets) - 1, len(mean), len(basis)
     longest = 0
@@ -111,12 +113,13 @@ def samples_to_subspace(blocks, offsets, mean, basis):  # type: ignore[no-untype
     return out
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def shared(bases, basis):  # type: ignore[no-untyped-def]
     """Σ cos² of the canonical angles between each segment's subspace and the query's.
 
-    bases (dims, D, S), segments side by side; basis (dims, D); orthonormal or zero rows; returns (S,). The sum of
-    the squared singular values of H Qᵀ is the sum of its squared entries, so no decomposition is needed.
+    bases (dims, D, S), segments side by side; basis (dims, D); orthonormal or zero rows; returns (S,). The
+    sum of the squared singular values of H Qᵀ is the sum of its squared entries, so no decomposition is
+    needed.
     """
     dims, width, s = bases.shape
     out = np.zeros(s)
@@ -127,7 +130,8 @@ def shared(bases, basis):  # type: ignore[no-untyped-def]
         for a in range(dims):
             dot[:] = 0.0
             for d in range(width):
-                # slices, not first + j: the compiler sees that indices are not negative and runs lanes in parallel
+                # slices, not first + j: the compiler sees that indices are not negative and runs lanes in
+                # parallel
                 here = bases[a, d, first : first + n]
                 for b in range(len(basis)):
                     q, line = basis[b, d], dot[b]

@@ -1,0 +1,70 @@
+"""Rankings: segments by their distance from a query."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from miburi.errors import InputError
+from miburi.motion import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Ranking:
+    """Segments by their distance from a query.
+
+    Parameters
+    ----------
+    order : (k,) int64
+        Indices of segments, nearest first; equal distances by index.
+    score : (k,) float64
+        Distance of segment `order[i]`; smaller is nearer.
+    """
+
+    order: NDArray[np.int64]
+    score: Floats
+
+    def __len__(self) -> int:
+        return len(self.order)
+
+
+def ranking(score: ArrayLike, k: int | None = None) -> Ranking:
+    """The k smallest of the segments' distances (all, if k is None), equal ones by index.
+
+    Raises
+    ------
+    InputError
+        k is less than 1.
+    """
+    values = np.asarray(score, dtype=np.float64)
+    if k is not None and k < 1:
+        raise InputError(f"the first {k} segments are wanted, expected at least 1")
+    if k is None or k >= len(values):
+        order = np.argsort(values, kind="stable")
+    else:
+        # all that are no worse than the k-th, so that ties at the limit are decided by index too
+        near = np.flatnonzero(values <= np.partition(values, k - 1)[k - 1])
+        order = near[np.argsort(values[near], kind="stable")][:k]
+    return Ranking(order.astype(np.int64), values[order])
+
+
+def merge(rankings: Sequence[Ranking], sizes: Sequence[int], k: int | None = None) -> Ranking:
+    """One ranking of several indices that lie one after the other (shards).
+
+    Parameters
+    ----------
+    rankings
+        One per shard, each of at least its first k.
+    sizes
+        Number of segments of each shard.
+    k
+        How many to keep; None: all that are there.
+    """
+    shift = np.concatenate([[0], np.cumsum(sizes)])[:-1]
+    order = np.concatenate([r.order + s for r, s in zip(rankings, shift, strict=True)])
+    score = np.concatenate([r.score for r in rankings])
+    best = np.lexsort((order, score))[: len(order) if k is None else k]
+    return Ranking(order[best].astype(np.int64), score[best])
