@@ -152,6 +152,17 @@ def test_angles_are_weighed():
         features(moving(1), angle_weight=0)
 
 
+@pytest.mark.parametrize("yaw", [0.0, 170.0])
+def test_angles_follow_a_trunk_that_bends_beyond_the_vertical(yaw):
+    pitch = np.concatenate([np.linspace(0, 150, 40), np.linspace(150, -130, 80)])
+    turned = np.stack([np.linspace(yaw, yaw + 40, 120), pitch, np.full(120, 5.0)], axis=1)
+    q = np.zeros((120, 14, 4))
+    q[..., 3] = 1
+    q[:, 0] = Rotation.from_euler("YXZ", turned, degrees=True).as_quat()
+    x = features(Motion(PERSON, 60.0, np.zeros((120, 3)), q), angle_weight=1.0)
+    np.testing.assert_allclose(np.degrees(x[:, 39:]), turned - [yaw, 0, 0], atol=1e-3)
+
+
 def test_no_frames_give_no_values():
     assert features(moving()[:0]).shape == (0, 42)
 

@@ -38,6 +38,24 @@ def _on_person(places: dict[str, Floats], frame: Floats) -> dict[str, Floats]:
     return mapped
 
 
+def _followed(angles: Floats) -> Floats:
+    """Yaw, pitch, roll (T, 3), radians, that a trunk which bends beyond the vertical takes without a jump.
+
+    (yaw + π, π − pitch, roll + π) is the same attitude: of the two, each frame gets the one nearer to the frame
+    before.
+    """
+    other = angles * [1.0, -1.0, 1.0] + np.pi
+
+    def apart(a: Floats, b: Floats) -> Floats:
+        gap: Floats = np.square((a - b + np.pi) % (2 * np.pi) - np.pi).sum(axis=1)
+        return gap
+
+    # changing sides is the same step from either side, so sides follow from counting the changes
+    changes = apart(other[1:], angles[:-1]) < apart(angles[1:], angles[:-1])
+    side = np.concatenate([[0], np.cumsum(changes) % 2])
+    return np.unwrap(np.where(side[:, None] == 1, other, angles), axis=0)
+
+
 def features(
     motion: Motion, joints: Mapping[str, str] | None = None, *, angle_weight: float = 0.3, mapped: bool = True
 ) -> NDArray[np.float32]:
@@ -70,8 +88,8 @@ def features(
 
     Notes
     -----
-    [P], section on preprocessing. With pitch near ±90° (lying) yaw and roll are not separately defined, as on
-    any device that reports these angles.
+    [P], section on preprocessing. The angles follow a trunk that bends beyond the vertical. At a pitch of exactly
+    ±90° yaw and roll are not separately defined, as on any device that reports these angles.
     """
     if not (np.isfinite(angle_weight) and angle_weight > 0):
         raise InputError(f"angle_weight is {angle_weight}, expected a positive number of metres per radian")
@@ -88,7 +106,7 @@ def features(
     x = np.empty((len(motion), WIDTH), dtype=np.float32)
     for k, name in enumerate(BODY_JOINTS):
         x[:, 3 * k : 3 * k + 3] = body[name]
-    angles = yaw_pitch_roll(frame)
+    angles = _followed(yaw_pitch_roll(frame))
     angles[:, 0] -= angles[0, 0]
     x[:, YAW:] = angle_weight * angles
     return x
