@@ -6,7 +6,8 @@ What a file means
   channels replace its OFFSET (axes without a channel keep it), wherever they stand among the rotations. So
   the root is at its position channels, not at OFFSET + channels: `Skeleton.offsets[0]` holds the OFFSET and
   `Motion.root` the channels less it. Position channels of inner joints become `Motion.translations`, or
-  nothing where they never differ from the OFFSET.
+  nothing where they never differ from the OFFSET, or where those of all inner joints stay below a thousandth
+  of the longest OFFSET (some programs write displacements; they would put every joint onto its parent).
 * `End Site` (also a leaf `JOINT Site` without channels) becomes an end. Joints of the same name are told
   apart by a number: the second `Bone` is `Bone.2`.
 * The format names no unit and no upward axis: see `miburi.formats.units`.
@@ -157,7 +158,7 @@ def _motion(path: text.File, header: Header, values: Floats, fps: float) -> Moti
                 places.append((j, axis, column))
             column += 1
     offsets = np.array(header.offsets)
-    root, translations = _translations(values, offsets, places)
+    root, translations = _translations(values, offsets, places, header.marked)
     name = text.stem(path)
     skeleton = Skeleton(
         tuple(header.joints),
@@ -171,7 +172,7 @@ def _motion(path: text.File, header: Header, values: Floats, fps: float) -> Moti
 
 
 def _translations(
-    values: Floats, offsets: Floats, places: list[tuple[int, int, int]]
+    values: Floats, offsets: Floats, places: list[tuple[int, int, int]], marked: bool
 ) -> tuple[Floats, NDArray[np.float64] | None]:
     """What position channels add to the offsets: the root's path, and the inner joints' if they move."""
     root = np.zeros((len(values), 3))
@@ -181,10 +182,12 @@ def _translations(
             root[:, axis] = values[:, column] - offsets[0, axis]
         else:
             inner.append((j, axis, column))
+    tiny = 1e-5 * max(float(np.abs(offsets).max()), 1e-12)
+    nothing = 1e-3 * float(np.abs(offsets[1:]).max(initial=0.0))
+    if not marked and all(np.abs(values[:, c]).max() <= nothing for _, _, c in inner):
+        return root, None
     # an OFFSET may be rounded more coarsely than the channels that repeat it
-    still = 1e-5 * max(float(np.abs(offsets).max()), 1e-12)
-    moved = [(j, a, c) for j, a, c in inner if np.abs(values[:, c] - offsets[j, a]).max() > still]
-    if not moved:
+    if all(np.abs(values[:, c] - offsets[j, a]).max() <= tiny for j, a, c in inner):
         return root, None
     translations = np.zeros((len(values), *offsets.shape))
     for j, axis, column in inner:
