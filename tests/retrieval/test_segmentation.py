@@ -10,7 +10,7 @@ from miburi.errors import InputError
 from miburi.figures import PERSON
 from miburi.motion import Motion, Skeleton
 from miburi.retrieval import pieces, ppca_curve, segment
-from miburi.retrieval.segmentation import _NOISE, pose
+from miburi.retrieval.segmentation import _NOISE, _next_cut, pose
 
 
 def performing(parts, fps=60.0, yaw=0.0, seed=0, seconds=5.0):
@@ -68,6 +68,21 @@ def test_simulated_changes_are_found():
     cuts = segment(motion)
     assert cuts.dtype == np.int64
     np.testing.assert_allclose(cuts / 60, [5, 10, 15], atol=0.5)
+
+
+@pytest.mark.parametrize(
+    ("curve", "cut"),
+    [
+        ([9, 4, 2, 5, 11, 12, 9, 8, 7], 50),  # valley 2, peak 12 at frame 50, passed by nothing for 30 frames
+        ([9, 4, 2, 5, 11, 10, 12, 9, 8, 7], 60),  # a notch before the peak
+        ([9, 4, 2, 5, 9, 8, 2, 3], None),  # never five times the valley
+        ([9, 4, 2, 5, 11, 12], None),  # the take ends while the curve still rises
+        ([9, 4, 2, 5, 11, 12, 11], 50),  # the take ends, but the curve has turned down
+        ([], None),
+    ],
+)
+def test_a_cut_is_a_peak_high_above_the_valley_before_it(curve, cut):
+    assert _next_cut(iter([(10 * i, h) for i, h in enumerate(curve)]), rise=5.0, hold=30) == cut
 
 
 def test_one_motion_is_one_piece():

@@ -41,8 +41,8 @@ def _on_person(places: dict[str, Floats], frame: Floats) -> dict[str, Floats]:
 def _followed(angles: Floats) -> Floats:
     """Yaw, pitch, roll (T, 3), radians, that a trunk which bends beyond the vertical takes without a jump.
 
-    (yaw + π, π − pitch, roll + π) is the same attitude: of the two, each frame gets the one nearer to the frame
-    before.
+    (yaw + π, π − pitch, roll + π) is the same attitude: of the two, each frame gets the one nearer to the
+    frame before.
     """
     other = angles * [1.0, -1.0, 1.0] + np.pi
 
@@ -88,8 +88,8 @@ def features(
 
     Notes
     -----
-    [P], section on preprocessing. The angles follow a trunk that bends beyond the vertical. At a pitch of exactly
-    ±90° yaw and roll are not separately defined, as on any device that reports these angles.
+    [P], section on preprocessing. The angles follow a trunk that bends beyond the vertical. At a pitch of
+    exactly ±90° yaw and roll are not separately defined, as on any device that reports these angles.
     """
     if not (np.isfinite(angle_weight) and angle_weight > 0):
         raise InputError(f"angle_weight is {angle_weight}, expected a positive number of metres per radian")

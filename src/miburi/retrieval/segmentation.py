@@ -128,7 +128,7 @@ def _growing(
 
 def _next_cut(curve: Iterator[tuple[int, float]], rise: float, hold: int) -> int | None:
     """The first peak `rise` times as high as the valley before it that is not passed within `hold` frames."""
-    valley, peak, where = np.inf, 0.0, -1
+    valley, peak, where, distance = np.inf, 0.0, -1, 0.0
     for frame, distance in curve:
         if where < 0:
             valley = min(valley, distance)
@@ -138,7 +138,8 @@ def _next_cut(curve: Iterator[tuple[int, float]], rise: float, hold: int) -> int
             where, peak = frame, distance
         elif frame - where >= hold:
             return where
-    return where if where >= 0 else None
+    # where the take ends soon, a curve that has turned down has had its peak
+    return where if distance < peak else None
 
 
 def segment(
