@@ -136,8 +136,8 @@ def _bones(lines: _Lines) -> Iterator[dict[str, list[str]]]:
         if key == "begin":
             if bone is not None:
                 lines.fail("found 'begin', expected 'end' of the bone before")
-            bone = {}
-            last = ""
+            bone, last = {}, ""
+            places: dict[str, int] = {}
         elif bone is None:
             lines.fail(f"found {text.shown(words[0])}, expected 'begin' of a bone")
         elif key == "end":
@@ -146,26 +146,32 @@ def _bones(lines: _Lines) -> Iterator[dict[str, list[str]]]:
                 lines.fail(f"bone {' '.join(bone.get('name', ['?']))!r} has no {missing[0]}")
             if len(bone["name"]) != 1:
                 lines.fail(f"found the name {' '.join(bone['name'])!r}, expected one word")
-            _check_bone(lines, bone)
+            _check_bone(lines, bone, places)
             yield bone
             bone = None
         elif key.startswith("(") and last == "limits":
             bone["limits"] += words
         else:
             last = key
+            places[key] = lines.at
             bone[key] = words[1:]
     if bone is not None:
         lines.fail("the bone data end in the middle of a bone")
 
 
-def _check_bone(lines: _Lines, bone: dict[str, list[str]]) -> None:
-    """Numbers and degrees of freedom of one bone, while the line is known."""
+def _check_bone(lines: _Lines, bone: dict[str, list[str]], places: dict[str, int]) -> None:
+    """Numbers and degrees of freedom of one bone, while their lines are known."""
+    end = lines.at
     name = bone["name"][0]
+    lines.at = places["direction"]
     lines.numbers(bone["direction"], 3, f"the direction of {name!r}")
+    lines.at = places["length"]
     (length,) = lines.numbers(bone["length"], 1, f"the length of {name!r}")
     if length < 0:
         lines.fail(f"bone {name!r} has the length {length}, expected at least 0")
+    lines.at = places["axis"]
     _axis(lines, bone["axis"], name, True)
+    lines.at = places.get("dof", end)
     dof = [d.lower() for d in bone.get("dof", [])]
     if "l" in dof:
         lines.fail(f"bone {name!r} changes its length (dof l), which is not supported")
@@ -174,7 +180,9 @@ def _check_bone(lines: _Lines, bone: dict[str, list[str]]) -> None:
             f"bone {name!r} has the degree of freedom {bad[0]!r}, expected rx, ry, rz, tx, ty or tz, "
             "each once"
         )
+    lines.at = places.get("limits", end)
     _limits(lines, bone, name, len(dof))
+    lines.at = end
 
 
 def _limits(

@@ -258,11 +258,11 @@ def _in_order(
     rows: list[bytes] = []
     frame: dict[str, bytes] = {}
     head = b""
-    number = text.line_of(data, begin) - 1
+    number = last = text.line_of(data, begin) - 1
 
     def close() -> None:
         if missing := [n for n in names if n not in frame]:
-            raise InputError(f"{path}, line {number}: frame {head.decode()} ends without {missing[0]!r}")
+            raise InputError(f"{path}, line {last}: frame {head.decode()} ends without {missing[0]!r}")
         rows.append(b" ".join([head, *(frame[n] for n in names)]))
 
     for line in data[begin:].split(b"\n"):
@@ -273,7 +273,7 @@ def _in_order(
         if len(words) == 1 and words[0].isdigit():
             if head:
                 close()
-            head, frame = words[0], {}
+            head, frame, last = words[0], {}, number
             continue
         name = text.decode(words[0])
         _check_line(path, number, text.decode(line).split(), bones, skeleton)
@@ -283,7 +283,7 @@ def _in_order(
         for token in words[1].split():
             if text.real(token) is None:
                 raise InputError(f"{path}, line {number}: {text.shown(token)} is not a finite number")
-        frame[name] = words[1].strip()
+        frame[name], last = words[1].strip(), number
     close()
     return b"\n".join(rows)
 
