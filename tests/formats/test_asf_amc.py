@@ -56,8 +56,8 @@ LOWER_BODY = {
     "lowerback": "LowerBack", "upperback": "Spine", "thorax": "Spine1",
 }  # fmt: skip
 UPPER_BODY = {
-    "lowerneck": "Neck", "upperneck": "Neck1", "head": "Head", "lhumerus": "LeftArm", "lradius": "LeftForeArm",
-    "lwrist": "LeftHand", "rhumerus": "RightArm", "rradius": "RightForeArm", "rwrist": "RightHand",
+    "lowerneck": "Neck", "upperneck": "Neck1", "head": "Head", "lhumerus": "LeftArm",
+    "lradius": "LeftForeArm", "lwrist": "LeftHand", "rhumerus": "RightArm", "rradius": "RightForeArm", "rwrist": "RightHand",
 }  # fmt: skip
 
 

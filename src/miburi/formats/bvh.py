@@ -133,7 +133,7 @@ def _declared(path: text.File, data: bytes, at: int) -> tuple[int, float, int]:
 def _values(path: text.File, data: bytes, begin: int, frames: int, channels: int) -> Floats:
     if channels == 0:
         raise InputError(f"{path}: no joint has channels, so nothing moves")
-    values = text.numbers(path, data, begin, channels)
+    values = text.numbers(path, data, begin, channels, broken=True)
     if len(values) != frames:
         line = text.line_of(data, begin) - 2
         rows = "1 row" if len(values) == 1 else f"{len(values)} rows"

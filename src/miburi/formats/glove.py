@@ -137,13 +137,14 @@ def read_counts(path: text.File) -> tuple[float, list[str], Floats, int]:
     keys = tables.signature(path, data, SIGNATURE)
     rate = tables.rate(path, keys, None)
     maximum = int(tables.number(path, "max in line 1", keys.get("max", "255"), above=0.0))
-    names, values = tables.read(path, data)
+    names = tables.header(path, data)
     if names[0] != "frame":
         raise InputError(f"{path}, line 2: the first column is {names[0]!r}, expected 'frame'")
     sensors = names[1:]
     expected = keys.get("sensors", str(len(sensors)))
     if expected != str(len(sensors)) or not sensors:
         raise InputError(f"{path}, line 2: {len(sensors)} columns of sensors, line 1 says {expected}")
+    _, values = tables.read(path, data)
     first = text.line_of(data, tables.start(data))
     _check_frames(path, values[:, 0], first)
     _check_counts(path, sensors, values[:, 1:], maximum, first)

@@ -84,8 +84,9 @@ def read(path: text.File, *, fps: float | None = None, calibration: text.File | 
     data = text.load(path)
     info = tables.signature(path, data, SIGNATURE)
     rate = tables.rate(path, info, fps)
-    columns, values = tables.read(path, data)
-    time, degrees = _degrees(path, columns, values, calibration)
+    columns = tables.header(path, data)
+    _check_columns(path, columns)
+    time, degrees = _degrees(path, columns, tables.read(path, data)[1], calibration)
     first = text.line_of(data, tables.start(data))
     degrees[:, 14] = np.degrees(np.unwrap(np.radians(degrees[:, 14])))
     degrees[:, 16] = np.degrees(np.unwrap(np.radians(degrees[:, 16])))
@@ -97,25 +98,30 @@ def _degrees(
     path: text.File, columns: list[str], values: Floats, calibration: text.File | None
 ) -> tuple[Floats, Floats]:
     """Time and the 17 angles of a table."""
-    known = {"time_s", *COLUMNS, *(f"{c}_adc" for c in COLUMNS)}
-    if extra := [c for c in columns if c not in known]:
-        raise InputError(f"{path}: there is no column {extra[0]!r} in a puppet log")
-    if "time_s" not in columns:
-        raise InputError(f"{path}: the column 'time_s' is missing")
     raw = [c for c in COLUMNS if f"{c}_adc" in columns]
     gains = _calibration(path, calibration, raw) if raw else {}
     out = np.empty((len(values), len(COLUMNS)))
     for k, name in enumerate(COLUMNS):
-        if name in columns and name in gains:
-            raise InputError(f"{path}: the columns {name!r} and '{name}_adc' are both there")
         if name in gains:
             gain, offset = gains[name]
             out[:, k] = gain * (values[:, columns.index(f"{name}_adc")] - offset)
-        elif name in columns:
-            out[:, k] = values[:, columns.index(name)]
         else:
-            raise InputError(f"{path}: the column {name!r} is missing")
+            out[:, k] = values[:, columns.index(name)]
     return values[:, columns.index("time_s")], out
+
+
+def _check_columns(path: text.File, columns: list[str]) -> None:
+    known = {"time_s", *COLUMNS, *(f"{c}_adc" for c in COLUMNS)}
+    if extra := [c for c in columns if c not in known]:
+        raise InputError(f"{path}, line 2: there is no column {extra[0]!r} in a puppet log")
+    if "time_s" not in columns:
+        raise InputError(f"{path}, line 2: the column 'time_s' is missing")
+    for name in COLUMNS:
+        found = (name in columns) + (f"{name}_adc" in columns)
+        if found == 2:
+            raise InputError(f"{path}, line 2: the columns {name!r} and '{name}_adc' are both there")
+        if found == 0:
+            raise InputError(f"{path}, line 2: the column {name!r} is missing")
 
 
 def _calibration(

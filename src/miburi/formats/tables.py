@@ -79,13 +79,13 @@ def start(data: bytes) -> int:
     return second if first and second else len(data)
 
 
-def read(path: text.File, data: bytes) -> tuple[list[str], Floats]:
-    """Header and numbers of a log's comma-separated table.
+def header(path: text.File, data: bytes) -> list[str]:
+    """Names of a log's columns: its second line.
 
     Raises
     ------
     InputError
-        A column stands twice, a value is missing or no number; the sentence names line and column.
+        There is none, or a column stands twice.
     """
     lines = data.split(b"\n", 2)
     columns = [c.strip() for c in text.decode(lines[1]).split(",")] if len(lines) > 1 else []
@@ -96,6 +96,18 @@ def read(path: text.File, data: bytes) -> tuple[list[str], Floats]:
     if len(set(columns)) != len(columns):
         twice = next(c for c in columns if columns.count(c) > 1)
         raise InputError(f"{path}, line 2: the column {twice!r} stands twice")
+    return columns
+
+
+def read(path: text.File, data: bytes) -> tuple[list[str], Floats]:
+    """Header and numbers of a log's comma-separated table.
+
+    Raises
+    ------
+    InputError
+        A column stands twice, a value is missing or no number; the sentence names line and column.
+    """
+    columns = header(path, data)
     begin = start(data)
     plain = data[begin:].replace(b",", b" ")
     try:

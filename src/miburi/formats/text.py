@@ -107,7 +107,7 @@ _TENS = np.array([10.0**k for k in range(23)])
 
 
 @numba.njit(cache=True)
-def _scan(text, begin, columns, tens, values, starts, hard):  # type: ignore[no-untyped-def]
+def _scan(text, begin, columns, broken, tens, values, starts, hard):  # type: ignore[no-untyped-def]
     """Parse blank-separated numbers.
 
     Returns (count, hard ones, offset of the first token that is no number or stands in the wrong line, or
@@ -125,7 +125,8 @@ def _scan(text, begin, columns, tens, values, starts, hard):  # type: ignore[no-
             i += 1
         if i >= n:
             return count, doubtful, -1
-        if count == len(values) or (count % columns == 0 and not fresh):
+        inside = count % columns != 0
+        if count == len(values) or (not inside and not fresh) or (inside and fresh and not broken):
             return count, doubtful, i
         fresh = False
         start = i
@@ -185,11 +186,10 @@ def _scan(text, begin, columns, tens, values, starts, hard):  # type: ignore[no-
         count += 1
 
 
-def numbers(path: File, data: bytes, begin: int, columns: int, what: str = "value") -> Floats:
+def numbers(path: File, data: bytes, begin: int, columns: int, *, broken: bool = False) -> Floats:
     """The table of numbers that fills `data` from byte `begin` to its end.
 
-    Numbers are rounded rightly; a row begins on a line of its own and may go over several. The memory used
-    is in proportion to the text.
+    Numbers are rounded rightly. The memory used is in proportion to the text.
 
     Parameters
     ----------
@@ -197,8 +197,8 @@ def numbers(path: File, data: bytes, begin: int, columns: int, what: str = "valu
         Named in errors.
     columns
         Numbers in a row.
-    what
-        What a number is called in errors.
+    broken
+        A row may go over several lines; it begins on a line of its own all the same.
 
     Returns
     -------
@@ -213,12 +213,12 @@ def numbers(path: File, data: bytes, begin: int, columns: int, what: str = "valu
     values = np.empty((len(data) - begin) // 2 + 1)
     room = 4096
     starts, hard = np.empty(room, np.int64), np.empty(room, np.int64)
-    count, doubtful, wrong = _scan(text, begin, columns, _TENS, values, starts, hard)
+    count, doubtful, wrong = _scan(text, begin, columns, broken, _TENS, values, starts, hard)
     if doubtful > room:
         starts, hard = np.empty(doubtful, np.int64), np.empty(doubtful, np.int64)
-        count, doubtful, wrong = _scan(text, begin, columns, _TENS, values, starts, hard)
+        count, doubtful, wrong = _scan(text, begin, columns, broken, _TENS, values, starts, hard)
     if wrong >= 0 or count % columns:
-        _complain(path, data, begin, columns, wrong, what)
+        _complain(path, data, begin, columns, wrong)
     if doubtful > count // 100:  # a text of many digits: the C library rounds it faster in one go
         values = np.fromstring(data[begin:].decode("ascii"), sep=" ")
         hard = hard[:doubtful]
@@ -246,7 +246,7 @@ def _token(data: bytes, start: int) -> bytes:
     return data[start : start + 1000].split(None, 1)[0]
 
 
-def _complain(path: File, data: bytes, begin: int, columns: int, wrong: int, what: str) -> NoReturn:
+def _complain(path: File, data: bytes, begin: int, columns: int, wrong: int) -> NoReturn:
     """Say which line is wrong: a token that is no number, else the first row of another length."""
     number = line_of(data, begin)
     for line in data[begin:].split(b"\n"):
@@ -256,6 +256,6 @@ def _complain(path: File, data: bytes, begin: int, columns: int, wrong: int, wha
                 raise InputError(f"{path}, line {number}: {shown(token)} is not a finite number")
         if tokens and len(tokens) != columns:
             s = "" if len(tokens) == 1 else "s"
-            raise InputError(f"{path}, line {number}: {len(tokens)} {what}{s}, expected {columns}")
+            raise InputError(f"{path}, line {number}: {len(tokens)} value{s}, expected {columns}")
         number += 1
     raise InputError(f"{path}, line {line_of(data, max(wrong, 0))}: expected rows of {columns} numbers")
