@@ -57,7 +57,8 @@ LOWER_BODY = {
 }  # fmt: skip
 UPPER_BODY = {
     "lowerneck": "Neck", "upperneck": "Neck1", "head": "Head", "lhumerus": "LeftArm",
-    "lradius": "LeftForeArm", "lwrist": "LeftHand", "rhumerus": "RightArm", "rradius": "RightForeArm", "rwrist": "RightHand",
+    "lradius": "LeftForeArm", "lwrist": "LeftHand", "rhumerus": "RightArm", "rradius": "RightForeArm",
+    "rwrist": "RightHand",
 }  # fmt: skip
 
 

@@ -90,7 +90,7 @@ def test_real_rock_paper_scissors(recordings):
 
 @pytest.mark.parametrize("sign", "SABV")
 def test_real_postures_of_two_more_gloves(recordings, sign):
-    """S and A are fists, B a flat hand, V two fingers, on a CyberGlove and as quaternions of another maker."""
+    """S and A are fists, B a flat hand, V two fingers: a CyberGlove, and another maker's quaternions."""
     import gzip
 
     hand = recordings / "hand"

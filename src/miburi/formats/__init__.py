@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
+from miburi.conventions import family
 from miburi.errors import InputError
-from miburi.formats import asf_amc, bvh, glove, puppet, text
+from miburi.formats import asf_amc, bvh, glove, puppet, text, units
 from miburi.formats.annotations import read_annotations, write_annotations
 from miburi.formats.labels import read_labels, write_labels
 from miburi.motion import Motion, Skeleton
@@ -57,21 +59,38 @@ def read(
     rate = fps if fps is not None else _option(corpus, "fps")
     ending = text.suffix(path)
     if ending == ".bvh":
-        return bvh.read(
-            path,
-            fps=rate,
-            unit=_option(corpus, "unit"),
-            up=_option(corpus, "up"),
-            joints=_option(corpus, "joints"),
-        )
+        return _biovision(path, rate, corpus)[0]
     if ending == ".amc":
-        asf = skeleton if skeleton is not None else _option(corpus, "skeleton")
-        return asf_amc.read(path, skeleton=asf, fps=rate, unit=_option(corpus, "unit"))
+        return _acclaim(path, skeleton, rate, corpus)[0]
     if ending in (".csv", ".txt", ".dat", ".log"):
         return _table(path, rate, corpus)
     if ending == ".asf":
         raise InputError(f"{path}: is a skeleton without motion; read an .amc and give this as its skeleton")
     raise InputError(f"{path}: cannot be read as a recording; known are {KNOWN}")
+
+
+def _biovision(path: text.File, fps: float | None, corpus: Any) -> tuple[Motion, units.Choice]:
+    settings = {name: _option(corpus, name) for name in ("unit", "up", "joints")}
+    return bvh.load(path, fps=fps, **settings)
+
+
+def _acclaim(
+    path: text.File, skeleton: text.File | Skeleton | asf_amc.Acclaim | None, fps: float | None, corpus: Any
+) -> tuple[Motion, units.Choice]:
+    unit, up = _option(corpus, "unit"), _option(corpus, "up")
+    asf = skeleton if skeleton is not None else _option(corpus, "skeleton")
+    if isinstance(asf, Skeleton):
+        raise InputError(f"{path}: a Skeleton does not hold the axes of an ASF; give the path of the ASF")
+    if not isinstance(asf, asf_amc.Acclaim):
+        asf = asf_amc.read_asf(asf_amc.find_asf(path) if asf is None else asf, unit=unit)
+    motion = asf_amc.read(path, skeleton=asf, fps=fps)
+    choice = units.Choice(
+        asf.unit,
+        "length of the ASF" if unit is None else "stated",
+        up or "y",
+        "as Acclaim files have it" if up is None else "stated",
+    )
+    return units.turned(motion, choice.up), choice
 
 
 def _table(path: text.File, fps: float | None, corpus: Any) -> Motion:
@@ -106,21 +125,24 @@ def write(path: text.File, motion: Motion) -> None:
 def inspect(path: text.File, *, corpus: Any = None) -> dict[str, object]:
     """How a recording is understood: format, joints, frames, rate, unit, upward axis and what these rest
     on."""
-    motion = read(path, corpus=corpus)
     ending = text.suffix(path)
+    rate = _option(corpus, "fps")
+    choice = None
+    if ending == ".bvh":
+        motion, choice = _biovision(path, rate, corpus)
+    elif ending == ".amc":
+        motion, choice = _acclaim(path, None, rate, corpus)
+    else:
+        motion = read(path, corpus=corpus)
     facts: dict[str, object] = {
         "format": {".bvh": "BVH", ".amc": "AMC"}.get(ending, "table"),
         "joints": len(motion.skeleton),
         "frames": len(motion),
         "fps": motion.fps,
         "translations": motion.translations is not None,
+        "convention": family(motion.skeleton),
     }
-    if ending == ".bvh":
-        choice = bvh.load(
-            path, unit=_option(corpus, "unit"), up=_option(corpus, "up"), joints=_option(corpus, "joints")
-        )[1]
-        facts |= {"unit": choice.unit, "unit_why": choice.unit_why, "up": choice.up, "up_why": choice.up_why}
-    return facts
+    return facts | (asdict(choice) if choice is not None else {})
 
 
 __all__ = [

@@ -18,6 +18,9 @@ LONGEST_GAP_S = 10.0
 """A clock may not stand still or jump for longer."""
 
 
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the same language, parsed natively
+
+
 def first_line(signature: str, keys: Mapping[str, object]) -> str:
     """`# signature, key=value, …`; numbers are written as short as they are exact."""
     for key, value in keys.items():
@@ -196,7 +199,7 @@ def load_yaml(path: text.File) -> dict[str, Any]:
         It is none.
     """
     try:
-        document = yaml.safe_load(text.decode(text.load(path)))
+        document = yaml.load(text.decode(text.load(path)), _LOADER)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = f", line {mark.line + 1}" if mark is not None else ""

@@ -4,11 +4,12 @@ wrong."""
 from __future__ import annotations
 
 import gzip
+import io
 import os
 import re
 import zlib
 from pathlib import Path
-from typing import NoReturn
+from typing import BinaryIO, NoReturn
 
 import numba
 import numpy as np
@@ -34,7 +35,7 @@ def load(path: File) -> bytes:
     where = Path(path)
     try:
         with open(where, "rb") as file:
-            data = file.read(LARGEST + 1)
+            data = _bounded(where, file)
     except FileNotFoundError:
         raise InputError(f"{where}: there is no such file") from None
     except IsADirectoryError:
@@ -43,19 +44,28 @@ def load(path: File) -> bytes:
         raise InputError(f"{where}: cannot be read ({error.strerror})") from None
     if data[:2] == b"\x1f\x8b":
         try:
-            with gzip.open(where) as packed:
-                data = packed.read(LARGEST + 1)
+            with gzip.open(io.BytesIO(data)) as packed:
+                data = _bounded(where, packed)
         except (OSError, EOFError, zlib.error) as error:
             raise InputError(f"{where}: its gzip is damaged ({error})") from None
     elif where.suffix.lower() == ".gz":
         raise InputError(f"{where}: ends in .gz but is not gzipped")
-    if len(data) > LARGEST:
-        raise InputError(f"{where}: has more than {LARGEST >> 30} GiB of text")
     if data[:3] == b"\xef\xbb\xbf":
         data = data[3:]
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     return data
+
+
+def _bounded(where: Path, file: BinaryIO | gzip.GzipFile) -> bytes:
+    """All of a file, piece by piece, as far as it is not too large."""
+    pieces, size = [], 0
+    while piece := file.read(1 << 22):
+        pieces.append(piece)
+        size += len(piece)
+        if size > LARGEST:
+            raise InputError(f"{where}: has more than {LARGEST >> 30} GiB of text")
+    return b"".join(pieces)
 
 
 def decode(data: bytes) -> str:

@@ -99,8 +99,6 @@ def choose(
     """
     if unit is not None and not (np.isfinite(unit) and unit > 0):
         raise InputError(f"unit: found {unit}, expected metres per unit, above 0")
-    if up is not None and up not in _TURNS:
-        raise InputError(f"up: found {up!r}, expected x, y or z")
     body = _body(motion.skeleton, joints)
     sample = motion[:: max(1, -(-len(motion) // 64))]
     places = forward(sample)[0] if body is not None else None
@@ -137,6 +135,8 @@ def scaled(motion: Motion, unit: float) -> Motion:
 
 def turned(motion: Motion, up: str) -> Motion:
     """A change of basis that makes the axis `up` the y axis: offsets, root, rotations and translations."""
+    if up not in _TURNS:
+        raise InputError(f"up: found {up!r}, expected x, y or z")
     if up == "y":
         return motion
     x, y, z, w = _TURNS[up]
