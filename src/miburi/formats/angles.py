@@ -3,6 +3,8 @@ angles."""
 
 from __future__ import annotations
 
+import math
+
 import numba
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +13,7 @@ from miburi.motion import Floats
 
 
 @numba.njit(cache=True)
-def _compose(values, columns, axes, half, out):  # type: ignore[no-untyped-def]
+def _compose(values, columns, axes, bases, half, out):  # type: ignore[no-untyped-def]
     for t in range(values.shape[0]):
         for j in range(columns.shape[0]):
             x, y, z, w = 0.0, 0.0, 0.0, 1.0
@@ -20,23 +22,32 @@ def _compose(values, columns, axes, half, out):  # type: ignore[no-untyped-def]
                 if column < 0:
                     continue
                 h = values[t, column] * half
-                s, c = np.sin(h), np.cos(h)
-                # q · (s e_a, c), Hamilton product with a rotation about one axis
+                s, d = math.sin(h), math.cos(h)
+                # q · (s e_a, d), Hamilton product with a rotation about one axis
                 if axes[j, k] == 0:
-                    x, y, z, w = x * c + w * s, y * c + z * s, z * c - y * s, w * c - x * s
+                    x, y, z, w = x * d + w * s, y * d + z * s, z * d - y * s, w * d - x * s
                 elif axes[j, k] == 1:
-                    x, y, z, w = x * c - z * s, y * c + w * s, z * c + x * s, w * c - y * s
+                    x, y, z, w = x * d - z * s, y * d + w * s, z * d + x * s, w * d - y * s
                 else:
-                    x, y, z, w = x * c + y * s, y * c - x * s, z * c + w * s, w * c - z * s
-            out[t, j, 0], out[t, j, 1], out[t, j, 2], out[t, j, 3] = x, y, z, w
+                    x, y, z, w = x * d + y * s, y * d - x * s, z * d + w * s, w * d - z * s
+            c = bases[j]
+            out[t, j, 0] = c[0, 0] * x + c[0, 1] * y + c[0, 2] * z
+            out[t, j, 1] = c[1, 0] * x + c[1, 1] * y + c[1, 2] * z
+            out[t, j, 2] = c[2, 0] * x + c[2, 1] * y + c[2, 2] * z
+            out[t, j, 3] = w
 
 
 def rotations(
-    values: Floats, columns: NDArray[np.int64], axes: NDArray[np.int64], *, degrees: bool = True
+    values: Floats,
+    columns: NDArray[np.int64],
+    axes: NDArray[np.int64],
+    *,
+    degrees: bool = True,
+    bases: Floats | None = None,
 ) -> Floats:
     """Unit quaternions of joints from a table of angles.
 
-    R of a joint is the product, from left to right, of the rotations about its axes.
+    M of a joint is the product, from left to right, of the rotations about its axes; R = C M C⁻¹.
 
     Parameters
     ----------
@@ -46,6 +57,8 @@ def rotations(
         Columns of each joint's angles, −1 where it has fewer.
     axes : (J, 3) int
         0, 1, 2: about x, y, z.
+    bases : (J, 3, 3), optional
+        C of each joint, a rotation; absent: no change.
 
     Returns
     -------
@@ -54,7 +67,9 @@ def rotations(
     """
     out = np.empty((len(values), len(columns), 4))
     half = np.pi / 360 if degrees else 0.5
-    _compose(np.ascontiguousarray(values), columns, axes, half, out)
+    # C M C⁻¹ turns M's axis by C and leaves its angle
+    c = np.tile(np.eye(3), (len(columns), 1, 1)) if bases is None else np.ascontiguousarray(bases)
+    _compose(np.ascontiguousarray(values), columns, axes, c, half, out)
     return out
 
 

@@ -17,8 +17,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import numba
 import numpy as np
-from numpy.typing import NDArray
 
 from miburi.errors import InputError
 from miburi.formats import angles, text
@@ -199,47 +199,49 @@ def _check_line(path: text.File, line: int, words: list[str], bones: dict[str, B
         )
 
 
+@numba.njit(cache=True)
+def _blank(flat, names, bounds, counts):  # type: ignore[no-untyped-def]
+    """Blank names and ends of lines within frames; whether every frame has the same lines as the first."""
+    n = len(flat)
+    per = len(counts)
+    i = 0
+    k = 0
+    while i < n:
+        if k > 0:
+            for c in range(bounds[k - 1], bounds[k]):
+                if i >= n or flat[i] != names[c]:
+                    return False
+                flat[i] = 32
+                i += 1
+            if i >= n or (flat[i] != 32 and flat[i] != 9):
+                return False
+        found = 0
+        inside = False
+        while flat[i] != 10:
+            blank = flat[i] == 32 or flat[i] == 9
+            if not blank and not inside:
+                found += 1
+            inside = not blank
+            i += 1
+        if found != counts[k]:
+            return False
+        k += 1
+        if k < per:
+            flat[i] = 32
+        else:
+            k = 0
+        i += 1
+    return k == 0
+
+
 def _flattened(data: bytes, begin: int, names: list[str], bones: dict[str, Bone]) -> bytes | None:
-    """The frames without names, a line each, if every frame has the same lines; None if not.
-
-    All bytes are looked at as arrays: line k of each frame must begin with the k-th name and a blank.
-    """
-    body = data[begin:].rstrip() + b"\n"
-    flat = np.frombuffer(body, dtype=np.uint8).copy()
-    newlines = np.flatnonzero(flat == 10)
-    per = len(names) + 1
-    if len(newlines) % per:
-        return None
-    starts = np.concatenate([[0], newlines[:-1] + 1]).reshape(-1, per)
-    ends = newlines.reshape(-1, per)
-    for k, name in enumerate(names, 1):
-        raw = np.frombuffer(_raw(name), dtype=np.uint8)
-        if (ends[:, k] - starts[:, k] <= len(raw)).any():
-            return None
-        at = starts[:, k, None] + np.arange(len(raw))
-        after = flat[starts[:, k] + len(raw)]
-        if (flat[at] != raw).any() or ((after != 32) & (after != 9)).any():
-            return None
-        flat[at] = 32
-    flat[ends[:, :-1]] = 32
-    return flat.tobytes() if _even(flat, starts, ends, names, bones) else None
-
-
-def _even(
-    flat: NDArray[np.uint8],
-    starts: NDArray[np.int64],
-    ends: NDArray[np.int64],
-    names: list[str],
-    bones: dict[str, Bone],
-) -> bool:
-    """Whether every line has as many values as its bone has degrees of freedom."""
-    blank = (flat == 32) | (flat == 9) | (flat == 10)
-    begins = ~blank
-    begins[1:] &= blank[:-1]
-    tokens = np.concatenate([[0], np.cumsum(begins)])
-    expected = np.array([1] + [len(bones[n].dof) for n in names])
-    counts: NDArray[np.int64] = tokens[ends] - tokens[starts]
-    return bool((counts == expected).all())
+    """The frames without names, a line each, if every frame has the same lines; None if not."""
+    flat = np.frombuffer(data[begin:].rstrip() + b"\n", dtype=np.uint8).copy()
+    raw = [_raw(name) for name in names]
+    bounds = np.cumsum([0, *map(len, raw)])
+    counts = np.array([1] + [len(bones[n].dof) for n in names])
+    regular = _blank(flat, np.frombuffer(b"".join(raw), dtype=np.uint8), bounds, counts)
+    return flat.tobytes() if regular else None
 
 
 def _raw(name: str) -> bytes:
@@ -315,10 +317,8 @@ def _motion(
                 moves = True
                 translations[:, j, "xyz".index(d[1])] = values[:, column + k] * acclaim.unit
         column += len(bone.dof)
-    m = angles.rotations(values, columns, axes, degrees=degrees)
-    # C M C⁻¹ turns M's axis by C and leaves its angle
     bases = np.array([b.axis for b in acclaim.bones])
-    local = np.concatenate([np.einsum("jab,tjb->tja", bases, m[..., :3]), m[..., 3:]], axis=-1)
+    local = angles.rotations(values, columns, axes, degrees=degrees, bases=bases)
     if moves:
         translations = np.einsum("jab,tjb->tja", bases, translations)
     return Motion(acclaim.skeleton, fps, root, local, translations if moves else None, name=text.stem(path))

@@ -53,14 +53,15 @@ def load(path: File) -> bytes:
     if data[:3] == b"\xef\xbb\xbf":
         data = data[3:]
     if b"\r" in data:
-        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+        data = data.replace(b"\r\n", b"\n")
+        data = data.replace(b"\r", b"\n")
     return data
 
 
 def _bounded(where: Path, file: BinaryIO | gzip.GzipFile) -> bytes:
     """All of a file, piece by piece, as far as it is not too large."""
     pieces, size = [], 0
-    while piece := file.read(1 << 22):
+    while piece := file.read(1 << 24):
         pieces.append(piece)
         size += len(piece)
         if size > LARGEST:
