@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 import re
 from dataclasses import dataclass
 from typing import NoReturn
 
 from miburi.errors import InputError
 from miburi.formats import text
+
+log = logging.getLogger(__name__)
 
 MARK = " \t "
 """Stands after HIERARCHY in files that `write` made, unseen by other readers: centimetres, Y up, and an End
@@ -122,7 +125,10 @@ def parse(path: text.File, data: bytes) -> Header:
             while seen[name] > 1 and f"{name}.{seen[name]}" in seen:
                 seen[name] += 1
             tokens.brace()
-            _joint(tokens, found, name if seen[name] == 1 else f"{name}.{seen[name]}", open_)
+            unique = name if seen[name] == 1 else f"{name}.{seen[name]}"
+            if unique != name:
+                log.info("%s, line %d: another joint %r is called %r", path, tokens.line(), name, unique)
+            _joint(tokens, found, unique, open_)
             seen.setdefault(found.joints[-1], 1)
         elif key == "END" and open_:
             tokens.name()
