@@ -1,0 +1,1 @@
+"""What stands in for people: simulated recordings in the formats of real devices."""

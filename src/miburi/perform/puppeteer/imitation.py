@@ -1,0 +1,200 @@
+"""From a target motion and a user to a puppet log ([P]; what is modelled: `users.Habits`)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+from scipy.spatial.transform import Rotation
+
+from miburi.conventions import find_joints
+from miburi.errors import InputError
+from miburi.figures import BODY_JOINTS
+from miburi.kinematics import trunk_frame, unit, yaw_pitch_roll
+from miburi.motion import Floats, Motion
+from miburi.perform.puppeteer import body, plan
+from miburi.perform.puppeteer.chance import FPS, noise
+from miburi.perform.puppeteer.trunk import carry
+from miburi.perform.puppeteer.users import User
+from miburi.store import seed
+
+
+class Seen(NamedTuple):
+    """What a user sees of a clip, at 60 frames/s: where the puppet's limbs should go, and how the trunk turns."""
+
+    paths: Floats
+    """(T, 4, 3) metres on the puppet: hands and feet from shoulders and hips, in the trunk's frame."""
+    elbows: Floats
+    """(T, 4, 3) the same of elbows and knees."""
+    frames: Floats
+    """(T, 3, 3) the trunk in the world."""
+
+
+def _at(values: Floats, clock: Floats) -> Floats:
+    """Rows of values (T, …) at fractional places (N,), linear between neighbours."""
+    if len(values) < 2:
+        return np.repeat(values, len(clock), axis=0)
+    i = np.clip(clock.astype(np.intp), 0, len(values) - 2)
+    u = (clock - i).reshape(-1, *([1] * (values.ndim - 1)))
+    return (1 - u) * values[i] + u * values[i + 1]
+
+
+def watch(target: Motion, landmark: float) -> Seen:
+    """Map a clip onto the puppet.
+
+    Parameters
+    ----------
+    target
+        A person.
+    landmark
+        0: hands go by the arm's reach from the shoulder; 1: by the trunk's size from the waist (a hand on the hip
+        stays on the hip although the puppet's arms are long).
+    """
+    where = find_joints(target.skeleton)
+    n = max(int((len(target) - 1) * FPS / target.fps), 0) + 1
+    places = _at(target.positions(), np.arange(n) * (target.fps / FPS))
+    p = {name: places[:, where[name]] for name in ("waist", *BODY_JOINTS)}
+    frames = trunk_frame(p["l_hip"], p["r_hip"], p["waist"], p["neck"])
+    paths, elbows = np.empty((n, 4, 3)), np.empty((n, 4, 3))
+    size = body.TRUNK / _length(p["neck"] - p["waist"])
+    for k, (root, middle, end) in enumerate(body.PARTS):
+        reach = _length(p[middle] - p[root]) + _length(p[end] - p[middle])
+        from_root = np.einsum("tba,tb->ta", frames, p[end] - p[root]) * (body.REACH[k] / reach)
+        from_waist = np.einsum("tba,tb->ta", frames, p[end] - p["waist"]) * size - body.ROOTS[k]
+        share = landmark if k < 2 else 0.0  # feet are put by the legs' reach: the ground is not in the trunk's frame
+        paths[:, k] = (1 - share) * from_root + share * from_waist
+        elbows[:, k] = body.UPPER[k] * unit(np.einsum("tba,tb->ta", frames, p[middle] - p[root]), (0.0, -1.0, 0.0))
+    return Seen(paths, elbows, frames)
+
+
+def _length(vectors: Floats) -> float:
+    return max(float(np.median(np.linalg.norm(vectors, axis=-1))), 1e-6)
+
+
+def _within(paths: Floats) -> Floats:
+    """Places (…, 4, 3) drawn in to what the limbs can reach."""
+    length = np.linalg.norm(paths, axis=-1)
+    return paths * np.minimum(1.0, body.REACH / np.maximum(length, 1e-9))[..., None]
+
+
+def misjudge(paths: Floats, user: User, rng: np.random.Generator) -> Floats:
+    """The paths (T, 4, 3) as the user plays them: of another size, turned, shifted and without quick detail."""
+    h = user.habits
+    busy = int(plan.important(paths, h.ignore).sum())
+    harder = 1 + h.complexity * max(busy - 2, 0)
+    size = np.exp(h.amplitude + h.amplitude_error * harder * rng.normal(size=4))
+    turned = np.radians(h.direction_error * harder) / np.sqrt(3) * rng.normal(size=(4, 3))
+    shift = h.placement_error * harder / np.sqrt(3) * rng.normal(size=(4, 3)) * body.REACH[:, None]
+    smooth = gaussian_filter1d(paths, h.blur_s * FPS, axis=0, mode="nearest") if h.blur_s else paths
+    centre = smooth.mean(axis=0)
+    swing = np.einsum("lab,tlb->tla", Rotation.from_rotvec(turned).as_matrix(), smooth - centre)
+    return _within(centre + size[:, None] * swing + shift)
+
+
+def _unsteady(n: int, user: User, rng: np.random.Generator) -> Floats:
+    """How hands stray from the path: (n, 4, 3) metres."""
+    h = user.habits
+    slow = noise(n, 12, 0.35, rng)
+    quick = noise(n, 12, 0.012, rng) - noise(n, 12, 0.03, rng)
+    return ((h.wander * slow + h.tremor * quick) / np.sqrt(3)).reshape(n, 4, 3)
+
+
+def _knocks(held: NDArray[np.bool_], user: User, rng: np.random.Generator) -> Floats:
+    """Pushes (N, 4, 3), metres, when hands first take a limb and when they leave the last one.
+
+    Taking hold pushes a limb aside for a moment; a hand that opens lets it sag.
+    """
+    out = np.zeros((len(held), 4, 3))
+    anyone = np.flatnonzero(held.any(axis=1))
+    if user.habits.knock == 0 or len(anyone) == 0:
+        return out
+    first, last = anyone[0], anyone[-1]
+    n = min(round(0.3 * FPS), last - first + 1)
+    push = rng.normal(size=(4, 3)) * user.habits.knock
+    sag = 0.5 * rng.normal(size=(4, 3)) * user.habits.knock - np.array([0.0, user.habits.knock, 0.0])
+    bump = np.sin(np.pi * np.arange(n) / n)[:, None, None]
+    out[first : first + n] += bump * push
+    n = min(round(0.2 * FPS), last - first + 1)
+    out[last + 1 - n : last + 1] += (0.5 - 0.5 * np.cos(np.pi * np.arange(1, n + 1) / n))[:, None, None] * sag
+    return out
+
+
+def _arrange(paths: Floats, elbows: Floats, user: User, rng: np.random.Generator) -> Floats:
+    """Angles (4, 4), radians, of the limbs before the log begins.
+
+    Friction holds a pose, so users put the limbs into the clip's first pose and then record. A limb that hangs about
+    right, or that they think unimportant and is not far off, is left as it hangs.
+    """
+    h = user.habits
+    ranges = np.radians(body.RANGES)
+    hanging = np.clip(np.radians(h.mess) * rng.normal(size=(4, 4)), ranges[..., 0], ranges[..., 1])
+    out = hanging.copy()
+    for k in range(4):
+        rest = np.array([0.0, -body.REACH[k], 0.0])
+        mirror = np.array([body.SIDE[k], 1.0, 1.0])
+        if np.linalg.norm(paths[0, k] - rest) > h.care * body.REACH[k]:
+            out[k] = body.settle(
+                hanging[k], paths[0, k] * mirror, elbows[0, k] * mirror, h.elbow, body.UPPER[k], body.LOWER[k], k > 1, ranges[k]
+            )
+    return out
+
+
+def imitate(target: Motion, user: User, *, seed_parts: tuple[object, ...]) -> tuple[Floats, float]:
+    """A simulated user plays a clip with the puppet.
+
+    Parameters
+    ----------
+    target
+        A person, whose skeleton `conventions.find_joints` knows.
+    user
+        See `users`.
+    seed_parts
+        What the chance of this query is named after: config seed, experiment, target, repetition …
+
+    Returns
+    -------
+    angles : (N, 17) float64
+        Degrees, in the order of `formats.puppet.COLUMNS`, quantised to 300/1023°.
+    fps : float
+        60.
+
+    Raises
+    ------
+    InputError
+        The target has no frames, or its skeleton lacks a joint.
+    """
+    if len(target) == 0:
+        raise InputError(f"take {target.name!r} has no frames to imitate")
+    h = user.habits
+    rng = seed("imitate", user.name, *seed_parts)
+    seen = watch(target, h.landmark)
+    paths = misjudge(seen.paths, user, rng)
+    clock, held = plan.timeline(paths, paths + body.ROOTS, h, rng)
+    start = _arrange(paths, seen.elbows, user, rng)
+    n = len(clock)
+    wanted = np.stack([_at(paths[:, k], clock[:, k]) for k in range(4)], axis=1)
+    wanted = _within(wanted + _unsteady(n, user, rng) + _knocks(held, user, rng))
+    limbs = np.empty((n, 4, 4))
+    for k in range(4):
+        mirror = np.array([body.SIDE[k], 1.0, 1.0])
+        limbs[:, k] = body.follow(
+            start[k],
+            wanted[:, k] * mirror,
+            _at(seen.elbows[:, k], clock[:, k]) * mirror,
+            held[:, k],
+            round(plan.JOIN_S * FPS),
+            h.elbow,
+            np.radians(h.stick),
+            body.UPPER[k],
+            body.LOWER[k],
+            k > 1,
+            np.radians(body.RANGES[k]),
+        )
+    angles = np.empty((n, 17))
+    angles[:, :14] = np.degrees(body.columns(limbs))
+    busy = np.flatnonzero(held.any(axis=1))
+    span = (int(busy[0]), int(busy[-1])) if len(busy) else (0, n - 1)
+    angles[:, 14:] = np.degrees(yaw_pitch_roll(carry(seen.frames, clock[:, 4], span, user, rng)))
+    return body.quantise(angles), FPS

@@ -1,0 +1,190 @@
+"""Which limbs are played when: a user has two hands and a clip has four limbs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d, minimum_filter1d
+
+from miburi.motion import Floats
+from miburi.perform.puppeteer.body import REACH
+from miburi.perform.puppeteer.chance import FPS
+from miburi.perform.puppeteer.users import Habits
+
+PINCH = 0.06
+"""Metres: two hands or two feet of the puppet that stay this close are held between one hand's fingers."""
+PHRASE_S = 0.5
+"""Shortest piece of a clip that is played in one go."""
+JOIN_S = 0.4
+"""Seconds in which a limb that is taken is brought to where it is wanted."""
+_STILL = 0.04
+"""A limb whose path spreads by less than this share of its reach does not move."""
+_KEPT = 1.3
+"""A limb that is already held is worth more than another that moves as much."""
+
+
+@dataclass
+class Plan:
+    """A time line at 60 samples/s: where in the clip each limb and the trunk are, and who is held."""
+
+    clock: list[Floats] = field(default_factory=list)
+    """Pieces (n, 5): clip frame that the four limbs and the trunk play."""
+    held: list[NDArray[np.bool_]] = field(default_factory=list)
+    """Pieces (n, 4)."""
+    at: Floats = field(default_factory=lambda: np.zeros(5))
+
+    def add(self, n: int, limbs: Sequence[int], clip: Floats | None = None, *, trunk: bool = False) -> None:
+        """n samples in which `limbs` are held and play `clip` (n,) (absent: they wait), the trunk with them."""
+        clock = np.tile(self.at, (n, 1))
+        if clip is not None:
+            clock[:, [*limbs, *([4] if trunk else [])]] = clip[:, None]
+        held = np.zeros((n, 4), dtype=bool)
+        held[:, list(limbs)] = True
+        self.clock.append(clock)
+        self.held.append(held)
+        if n:
+            self.at = clock[-1].copy()
+
+
+def important(paths: Floats, ignore: float) -> NDArray[np.bool_]:
+    """Which limbs the user means to move: (4,), from the paths (T, 4, 3) of hands and feet, metres."""
+    spread = np.sqrt(paths.var(axis=0).sum(axis=-1)) / REACH
+    return spread > max(_STILL, ignore * float(spread.max()))
+
+
+def phrases(paths: Floats) -> list[tuple[int, int]]:
+    """Cut a clip (T, L, 3) where it is slowest: pieces (first, last frame), each about half a second or more."""
+    n = len(paths)
+    width = round(PHRASE_S * FPS)
+    if n < 2 * width:
+        return [(0, n - 1)]
+    speed = gaussian_filter1d(np.linalg.norm(np.diff(paths, axis=0), axis=-1).sum(axis=-1), 0.05 * FPS)
+    slow = np.flatnonzero((speed == minimum_filter1d(speed, 2 * width - 1)) & (speed < speed.mean()))
+    cuts = [0]
+    for t in slow.tolist():
+        if t - cuts[-1] >= width and n - 1 - t >= width:
+            cuts.append(t)
+    return list(zip(cuts, [*cuts[1:], n - 1], strict=True))
+
+
+def _grips(paths: Floats, places: Floats, wanted: Sequence[int]) -> list[tuple[int, ...]]:
+    """What one hand can hold in a phrase: a limb, or a pair of which both ends stay close together."""
+    units: list[tuple[int, ...]] = [(k,) for k in wanted]
+    for pair in ((0, 1), (2, 3)):
+        apart = np.linalg.norm(places[:, pair[0]] - places[:, pair[1]], axis=-1).max()
+        if pair[0] in wanted and pair[1] in wanted and apart < PINCH:
+            units.append(pair)
+    return units
+
+
+def lead(paths: Floats, places: Floats, value: Floats, habits: Habits) -> list[int]:
+    """The limbs that the hands hold in a phrase: those that are worth most together.
+
+    paths, places (T, 4, 3): hands and feet from their roots, and in the trunk's frame; value (4,): 0 for limbs that
+    need no hand.
+    """
+    wanted = [k for k in range(4) if value[k] > 0]
+    units = _grips(paths, places, wanted)
+    best: tuple[float, list[int]] = (0.0, [])
+    for n in range(1, habits.grips + 1):
+        for chosen in combinations(units, n):
+            limbs = sorted(k for unit in chosen for k in unit)
+            if len(set(limbs)) == len(limbs) <= habits.limbs:
+                worth = float(value[limbs].sum())
+                if worth > best[0]:
+                    best = (worth, limbs)
+    return best[1]
+
+
+def _uneven(first: float, last: float, n: int, amount: float, rng: np.random.Generator) -> Floats:
+    """From first to last in n samples, faster here and slower there, never backwards."""
+    r = np.arange(1, n + 1) / n
+    bend = float(np.clip(amount * rng.normal(), -0.6, 0.6))
+    return first + (last - first) * (r + bend * np.sin(2 * np.pi * r) / (2 * np.pi))
+
+
+def _samples(seconds: float) -> int:
+    return round(seconds * FPS)
+
+
+def timeline(paths: Floats, places: Floats, habits: Habits, rng: np.random.Generator) -> tuple[Floats, NDArray[np.bool_]]:
+    """Plan how a clip is played.
+
+    Parameters
+    ----------
+    paths : (T, 4, 3)
+        Where hands and feet are wanted from shoulders and hips, at 60 frames/s, metres on the puppet.
+    places : (T, 4, 3)
+        The same from the waist.
+
+    Returns
+    -------
+    clock : (N, 5)
+        Clip frame of each limb and of the trunk.
+    held : (N, 4)
+        Who is in the user's hands; at most `habits.limbs` at once.
+    """
+    meant = important(paths, habits.ignore)
+    plan = Plan()
+    pieces = phrases(paths[:, meant]) if meant.any() else [(0, len(paths) - 1)]
+    held: list[int] = []
+    plan.add(_samples(habits.reach_in_s * rng.uniform(0.3, 0.6)), [])  # the hands come near
+    for number, (a, b) in enumerate(pieces):
+        phrase, where = paths[a : b + 1], places[a : b + 1]
+        travel = np.linalg.norm(phrase - phrase[0], axis=-1).max(axis=0) * meant
+        worth = np.where(travel > _STILL * REACH, travel, 0.0)
+        worth[held] *= _KEPT
+        led = lead(phrase, where, worth, habits) or held
+        if number == 0:
+            plan.add(_samples(habits.reach_in_s * rng.uniform(0.3, 0.5)), led)  # … and take hold
+        elif led != held:
+            plan.add(_samples(habits.regrip_s * rng.uniform(0.7, 1.3)), [])
+        elif rng.random() < habits.pause:
+            plan.add(_samples(habits.pause_s * rng.uniform(0.2, 1.0)), led)
+        pace = float(np.clip(habits.tempo * np.exp(habits.tempo_error * rng.normal()), 0.5, 2.0))
+        n = max(round((b - a) / pace), 1)
+        plan.add(n, led, _uneven(a, b, n, habits.tempo_error, rng), trunk=True)
+        held = _afterwards(plan, led, paths, places, (a, b), travel, habits, rng)
+    plan.add(_samples(0.25 * min(habits.reach_in_s, 1.0)), held)  # the fingers open
+    plan.add(_samples(habits.reach_in_s * rng.uniform(0.3, 0.6)), [])
+    return np.concatenate(plan.clock), np.concatenate(plan.held)
+
+
+def _afterwards(
+    plan: Plan,
+    led: list[int],
+    paths: Floats,
+    places: Floats,
+    phrase: tuple[int, int],
+    travel: Floats,
+    habits: Habits,
+    rng: np.random.Generator,
+) -> list[int]:
+    """Move the limbs that had to wait, or leave them; returns who is held at the end.
+
+    A limb that travelled in the phrase plays it now, up to twice as fast; one that is only in the wrong place is put
+    where it belongs.
+    """
+    a, b = phrase
+    due = habits.care * REACH
+    reached = paths[plan.at[:4].astype(np.intp), np.arange(4)]
+    off = np.linalg.norm(paths[b] - reached, axis=-1)
+    late = [k for k in range(4) if k not in led and travel[k] > 0 and max(travel[k], off[k]) > due[k]]
+    late = [k for k in late if rng.random() < habits.patience]
+    held = led
+    while late:
+        value = np.zeros(4)
+        value[late] = np.maximum(travel, off)[late]
+        group = lead(paths[a : b + 1], places[a : b + 1], value, habits)
+        plan.add(_samples(habits.regrip_s * rng.uniform(0.7, 1.3)), [])
+        moved = [k for k in group if travel[k] > due[k]]
+        n = max(round((b - a) / min(2.0, 1.5 * habits.tempo)), _samples(JOIN_S))
+        clip = _uneven(a, b, n, habits.tempo_error, rng) if moved else np.full(n, float(b))
+        plan.add(n, group, clip)
+        late = [k for k in late if k not in group]
+        held = group
+    return held

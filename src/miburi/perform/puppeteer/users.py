@@ -1,0 +1,235 @@
+"""Who plays the puppet: users, their skill and their habits.
+
+All figures here were fixed from what [P] says and from common knowledge of hands before any query was ranked. None
+was chosen by looking at a test user.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from miburi.errors import InputError
+from miburi.store import seed
+
+SPLITS = ("development", "test")
+STYLES = ("hand", "stage", "strapped")
+
+SKILL = (0.2, 0.8)
+"""[P]'s users had no animation skills; none is a master (1) and none is hopeless (0)."""
+
+TEMPO = (0.6, 1.6)
+"""A person plays at a pace of their own; with `tempo_error` the pace stays between half and twice the clip's."""
+
+
+@dataclass(frozen=True)
+class Habits:
+    """How a user plays. All zero but for `grips`, `limbs` and the trunk's gain and limit is a perfect user.
+
+    Lengths are metres on a puppet of 0.33 m, angles are degrees.
+    """
+
+    # "Users can move only two limbs at once"; one hand holds the trunk or both are free.
+    grips: int
+    """Free hands. A hand holds one limb, or both hands or both feet of the puppet while they are close together."""
+    limbs: int
+    """Most limbs that move at once."""
+    patience: float
+    """Chance that a limb that had to wait is moved afterwards, not left."""
+    ignore: float
+    """A limb that moves less than this share of what the busiest limb does is judged unimportant and left still."""
+    care: float
+    """A limb is moved afterwards only if it missed more than this share of its reach."""
+    regrip_s: float
+    """Seconds to let go of one limb and to take another."""
+
+    # "Users follow the paths of the hands and feet, not the joint angles", on a body of other proportions.
+    landmark: float
+    """0: hands are put where they are from the shoulder, by the arm's reach; 1: where they are by the trunk."""
+    elbow: float
+    """How much the place of elbow and knee counts beside that of hand and foot."""
+
+    # "Joint angles differ much", "complex motions are hard": paths differ in size, direction and place.
+    amplitude: float
+    """This user's bias: logarithm of the size of all paths."""
+    amplitude_error: float
+    """Spread of the logarithm of the size of a path, one draw for each limb and query."""
+    direction_error: float
+    """Degrees by which a path is turned."""
+    placement_error: float
+    """Shares of the reach by which a path is shifted."""
+    complexity: float
+    """By how much these three errors grow with each important limb beyond two."""
+    blur_s: float
+    """Quick detail is lost: the width, in seconds, of the window that smooths the clip."""
+    wander: float
+    """Slow error of a hand that moves without a guide."""
+    tremor: float
+    """Physiological tremor, 8 to 12 Hz."""
+
+    # Everybody plays at their own pace.
+    tempo: float
+    """Clip seconds per second."""
+    tempo_error: float
+    """Spread of the logarithm of the pace from phrase to phrase, and how uneven it is within one."""
+    pause: float
+    """Chance of a pause between two phrases."""
+    pause_s: float
+    """Longest pause."""
+    reach_in_s: float
+    """Seconds until the hands are on the limbs, and as many after they let go."""
+    knock: float
+    """How far a limb is pushed when a hand takes or leaves it."""
+
+    # "Physics does not bind the puppet: the user carries it"; "little control of the trunk" on a stage.
+    trunk_gain: float
+    """Share of the trunk's turning that is played."""
+    trunk_limit: float
+    """Degrees by which the trunk can be tilted."""
+    tilt: float
+    """How crooked the trunk is held."""
+    drift: float
+    """How far the trunk's tilt wanders while it is carried."""
+    shake: float
+    """Tremor of the hand, or of the body, that carries the trunk."""
+
+    # "Friction holds a pose when it is let go": a property of the puppet.
+    stick: float
+    """A joint at rest moves when it is pushed by more than this."""
+    mess: float
+    """How crooked limbs hang that nobody has put anywhere."""
+
+
+def perfect() -> Habits:
+    """Habits of a user who errs in nothing and has a hand for every limb: a yardstick, never a query's user."""
+    zeros = dict.fromkeys(Habits.__dataclass_fields__, 0.0)
+    whole = {"grips": 4, "limbs": 4, "elbow": 0.3, "tempo": 1.0, "trunk_gain": 1.0, "trunk_limit": 180.0}
+    return Habits(**(zeros | whole))  # type: ignore[arg-type]
+
+
+# What the three ways of holding the puppet allow. On the hand: the trunk goes where it is carried, one hand is left.
+# On a stage: two hands for the limbs, the stand turns and tilts a little. Strapped to the own chest: the trunk does
+# what the user's does who must stay on their feet; both hands are free, working half blind below the chin.
+_HOLDING = {
+    "hand": {"grips": 1, "trunk_gain": (1.0, 1.0), "trunk_limit": 180.0, "tilt": 6.0, "drift": 6.0, "shake": 0.4},
+    "stage": {"grips": 2, "trunk_gain": (0.1, 0.4), "trunk_limit": 20.0, "tilt": 2.0, "drift": 0.5, "shake": 0.0},
+    "strapped": {"grips": 2, "trunk_gain": (0.7, 1.0), "trunk_limit": 60.0, "tilt": 6.0, "drift": 3.0, "shake": 0.3},
+}
+_STRAPPED_CLUMSINESS = 1.3
+
+# What skill changes: the figure of the least skilled and of the most skilled.
+_BY_SKILL = {
+    "patience": (0.2, 0.8),
+    "ignore": (0.5, 0.2),
+    "care": (0.3, 0.12),
+    "regrip_s": (0.6, 0.3),
+    "elbow": (0.05, 0.3),
+    "amplitude_error": (0.4, 0.12),  # "amplitude errors of tens of per cent"
+    "direction_error": (25.0, 8.0),
+    "placement_error": (0.15, 0.04),
+    "blur_s": (0.15, 0.05),
+    "wander": (0.008, 0.003),
+    "tremor": (0.0012, 0.0006),
+    "tempo_error": (0.3, 0.12),
+    "pause": (0.5, 0.15),
+    "pause_s": (0.9, 0.4),
+    "reach_in_s": (0.9, 0.5),
+    "knock": (0.012, 0.005),
+    "mess": (8.0, 4.0),
+}
+_COMPLEXITY = 0.2
+_STICK = 2.5
+_LANDMARK = 0.6
+_AMPLITUDE = 0.15
+
+
+@dataclass(frozen=True)
+class User:
+    """A simulated user.
+
+    Parameters
+    ----------
+    name
+        Names experiment, split and number.
+    split
+        "development": settings may be chosen with them; "test": looked at once.
+    style
+        How the puppet is held: "hand", "stage" or "strapped".
+    skill
+        0 to 1.
+    habits
+        Drawn once.
+    """
+
+    name: str
+    split: str
+    style: str
+    skill: float
+    habits: Habits
+
+
+def habits(style: str, skill: float, rng: np.random.Generator) -> Habits:
+    """The habits of a user who holds the puppet in this way and has this skill.
+
+    The draws do not depend on style and skill, so that the same generator gives the same person at another skill.
+    """
+    holding = dict(_HOLDING[style])
+    low, high = holding.pop("trunk_gain")  # type: ignore[misc]
+    u = rng.random(3)
+    bias = float(np.clip(rng.normal(), -2.0, 2.0))
+    settings: dict[str, float] = {k: a + (b - a) * skill for k, (a, b) in _BY_SKILL.items()}
+    if style == "strapped":
+        for key in ("direction_error", "placement_error", "wander"):
+            settings[key] *= _STRAPPED_CLUMSINESS
+    for key in ("tilt", "drift"):
+        holding[key] = float(holding[key]) * (1.5 - skill)  # type: ignore[arg-type]
+    return Habits(
+        **holding,  # type: ignore[arg-type]
+        **settings,
+        limbs=2,
+        landmark=_LANDMARK * float(u[0]),
+        amplitude=_AMPLITUDE * bias,
+        complexity=_COMPLEXITY,
+        tempo=float(TEMPO[0] * (TEMPO[1] / TEMPO[0]) ** u[1]),
+        trunk_gain=float(low + (high - low) * u[2]),
+        stick=_STICK,
+    )
+
+
+def users(experiment: str, split: str, n: int, config_seed: object = 0) -> list[User]:
+    """The users of an experiment.
+
+    Parameters
+    ----------
+    experiment
+        The experiment's name: another experiment has other users.
+    split
+        "development" or "test". The split is part of each name and of what each user is drawn from, so no user is
+        in both.
+    n
+        How many; the three styles take turns.
+    config_seed
+        Seed of the run.
+
+    Returns
+    -------
+    list of User
+        The first users of a longer list are those of a shorter one.
+
+    Raises
+    ------
+    InputError
+        There is no such split.
+    """
+    if split not in SPLITS:
+        raise InputError(f"split {split!r} of the users of {experiment!r}: expected one of {', '.join(SPLITS)}")
+    found = []
+    turn = int(seed(config_seed, "puppeteer", experiment, split).integers(len(STYLES)))
+    for k in range(n):
+        name = f"{experiment}-{split}-{k + 1}"
+        rng = seed(config_seed, "puppeteer", "user", name)
+        style = STYLES[(turn + k) % len(STYLES)]
+        skill = float(rng.uniform(*SKILL))
+        found.append(User(name, split, style, skill, habits(style, skill, rng)))
+    return found
