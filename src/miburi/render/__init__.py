@@ -1,0 +1,1 @@
+"""Pictures: films and contact sheets by OpenGL, plots by matplotlib."""

@@ -1,0 +1,266 @@
+"""What is seen of motions: points and bones with sizes and colours, a grid, and where the camera stands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from miburi.conventions import find_joints
+from miburi.errors import InputError
+from miburi.figures import FINGERS, HAND
+from miburi.kinematics import ends, forward
+from miburi.motion import Floats, Motion, Skeleton
+
+FIELD = float(np.radians(32.0))
+"""Vertical field of view."""
+
+_TRUNK = (0.42, 0.42, 0.45)
+_LEFT = (0.86, 0.36, 0.13)
+_RIGHT = (0.12, 0.38, 0.68)
+_FINGERS = ((0.55, 0.16, 0.10), (0.93, 0.56, 0.16), (0.25, 0.56, 0.30), (0.15, 0.45, 0.68), (0.42, 0.28, 0.60))
+_HAND_VIEW = (0.34, 0.30, 1.0)  # palm, a little from the thumb's side and from above
+_STANDS_STILL = 2.5  # metres: a body that goes further is followed by the camera
+
+
+class Group(NamedTuple):
+    """Figures as they are drawn: N points and B bones over T frames.
+
+    Parameters
+    ----------
+    points : (T, N, 3)
+        Joints and ends, metres.
+    bones : (B, 2)
+        Indices of the points that each bone joins.
+    radii, bone_radii : (N,), (B,)
+        Metres.
+    colours, bone_colours : (N, 4), (B, 4)
+        Red, green, blue, opacity, from 0 to 1.
+    floor, cell
+        Height of the grid and width of its cells, metres.
+    view : (3,)
+        From the figures towards the camera.
+    follow : (T, 3)
+        What the camera keeps up with; zeros if it stands still.
+    """
+
+    points: Floats
+    bones: NDArray[np.int64]
+    radii: Floats
+    bone_radii: Floats
+    colours: Floats
+    bone_colours: Floats
+    floor: float
+    cell: float
+    view: Floats
+    follow: Floats
+
+
+class Camera(NamedTuple):
+    """Where the camera is at each frame: `rotation` (3, 3), columns right, up, back; `places` (T, 3) metres."""
+
+    rotation: Floats
+    places: Floats
+
+
+def is_hand(skeleton: Skeleton) -> bool:
+    """Whether the skeleton has the 16 joints of `figures.HAND`."""
+    return skeleton.joints == HAND.joints
+
+
+def group(motions: Sequence[Motion]) -> Group:
+    """Figures side by side, from the left to the right of the picture, facing the camera as the first one does."""
+    parts = [_one(m) for m in motions]
+    frames = max(len(p.points) for p in parts)
+    points, bones, first, edge = [], [], 0, 0.0
+    right = look(parts[0].view)[:, 0]
+    for part in parts:
+        own = _turned(part, parts[0].view) if len(parts) > 1 else part.points
+        own = np.concatenate([own, np.repeat(own[-1:], frames - len(own), axis=0)])
+        if len(parts) > 1:
+            across = own @ right
+            own = own + (edge - across.min()) * right
+            edge += float(np.ptp(across)) + 2.0 * part.cell
+        points.append(own)
+        bones.append(part.bones + first)
+        first += own.shape[1]
+    whole = np.concatenate(points, axis=1)
+    merged = [np.concatenate([getattr(p, name) for p in parts]) for name in ("radii", "bone_radii")]
+    colours = [np.concatenate([getattr(p, name) for p in parts]) for name in ("colours", "bone_colours")]
+    return Group(
+        whole,
+        np.concatenate(bones),
+        *merged,
+        *colours,
+        floor=min(p.floor for p in parts),
+        cell=max(p.cell for p in parts),
+        view=parts[0].view,
+        follow=parts[0].follow if len(parts) == 1 else np.zeros((frames, 3)),
+    )
+
+
+def _turned(part: Group, view: Floats) -> Floats:
+    """Points turned about the vertical, so that a figure that is seen from `part.view` is seen from `view`."""
+    angle = np.arctan2(view[0], view[2]) - np.arctan2(part.view[0], part.view[2])
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+    return np.asarray(part.points @ turn.T)
+
+
+def _one(motion: Motion) -> Group:
+    """One figure."""
+    skeleton = motion.skeleton
+    joints = forward(motion)[0]
+    points = np.concatenate([joints, ends(motion)], axis=1)
+    n = len(skeleton)
+    pairs = [(int(p), j) for j, p in enumerate(skeleton.parents) if p >= 0]
+    pairs += [(int(e), n + k) for k, e in enumerate(skeleton.ends)]
+    bones = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    lengths = np.linalg.norm(points[0, bones[:, 0]] - points[0, bones[:, 1]], axis=1)
+    bones, lengths = bones[lengths > 1e-3], lengths[lengths > 1e-3]  # joints in one place need no bone
+    hand = is_hand(skeleton)
+    owner = np.concatenate([np.arange(n), skeleton.ends]).astype(np.int64)
+    colours = np.array(_finger_colours() if hand else _side_colours(skeleton), dtype=np.float64)[owner]
+    thickness = 0.0062 if hand else 0.017 * _height(motion, points)
+    radii, bone_radii = _sizes(points.shape[1], bones, lengths, thickness)
+    opaque = np.ones((points.shape[1], 1))
+    rgba = np.concatenate([colours, opaque], axis=1)
+    tint = 0.72 * rgba + 0.28 * np.array([1.0, 1.0, 1.0, 1.0])
+    return Group(
+        points,
+        bones,
+        radii,
+        bone_radii,
+        rgba,
+        tint[bones[:, 1]],
+        floor=float(joints[:, 0, 1].min()) if hand else _floor(points, thickness),
+        cell=0.02 if hand else 0.5,
+        view=np.array(_HAND_VIEW) if hand else _front(motion, joints),
+        follow=np.zeros((len(points), 3)) if hand else _path(joints[:, 0], motion.fps),
+    )
+
+
+def _height(motion: Motion, points: Floats) -> float:
+    """About how tall a body is: the largest extent of its rest pose (metres)."""
+    rest = np.zeros((len(motion.skeleton), 3))
+    for j, p in enumerate(motion.skeleton.parents):
+        rest[j] = motion.skeleton.offsets[j] + (rest[p] if p >= 0 else 0.0)
+    size = float(np.ptp(rest, axis=0).max())
+    return size if size > 1e-6 else float(np.ptp(points[0], axis=0).max()) or 1.0
+
+
+def _sizes(n: int, bones: NDArray[np.int64], lengths: Floats, thickness: float) -> tuple[Floats, Floats]:
+    """Radii of points and bones: the figure's thickness, less where the bones are short (fingers of a body)."""
+    longest = np.zeros(n)
+    np.maximum.at(longest, bones.ravel(), np.repeat(lengths, 2))
+    radii = np.clip(0.24 * longest, 0.3 * thickness, thickness)
+    bone_radii = 0.62 * np.minimum(radii[bones[:, 0]], radii[bones[:, 1]])
+    return radii, bone_radii
+
+
+def _floor(points: Floats, thickness: float) -> float:
+    """Height of the ground: below all but the lowest hundredth of the frames."""
+    return float(np.quantile(points[:, :, 1].min(axis=1), 0.01)) - thickness
+
+
+def _finger_colours() -> list[tuple[float, float, float]]:
+    return [_TRUNK, *(_FINGERS[FINGERS.index(j[:-1])] for j in HAND.joints[1:])]
+
+
+def _side_colours(skeleton: Skeleton) -> list[tuple[float, float, float]]:
+    """Left limbs warm, right limbs cool, the trunk grey; all grey where the joints' names say nothing."""
+    try:
+        known = find_joints(skeleton)
+    except InputError:
+        return [_TRUNK] * len(skeleton)
+    colours = [_TRUNK] * len(skeleton)
+    for start, colour in (("l_shoulder", _LEFT), ("l_hip", _LEFT), ("r_shoulder", _RIGHT), ("r_hip", _RIGHT)):
+        colours[known[start]] = colour
+    for j, p in enumerate(skeleton.parents):
+        if p >= 0 and colours[p] != _TRUNK:
+            colours[j] = colours[p]
+    return colours
+
+
+def _front(motion: Motion, joints: Floats) -> Floats:
+    """From the figure to a camera before it, 35° to its left and 14° up; what is before it is the mean over time."""
+    try:
+        known = find_joints(motion.skeleton)
+    except InputError:
+        return np.array([0.5, 0.25, 1.0])
+    left = joints[:, [known["l_hip"], known["l_shoulder"]]].mean(axis=1)
+    right = joints[:, [known["r_hip"], known["r_shoulder"]]].mean(axis=1)
+    across = left - right
+    ahead = np.stack([-across[:, 2], across[:, 0]], axis=1)  # y up: forward is across × up
+    x, z = ahead.mean(axis=0)
+    if np.hypot(x, z) < 1e-6:
+        x, z = 0.0, 1.0
+    angle = np.arctan2(x, z) + np.radians(35.0)
+    return np.array([np.sin(angle), np.tan(np.radians(14.0)), np.cos(angle)])
+
+
+def _path(root: Floats, fps: float) -> Floats:
+    """The root's smoothed way over the ground, from its first frame; zeros if it stays in one place."""
+    way = root * (1.0, 0.0, 1.0)
+    if np.linalg.norm(np.ptp(way, axis=0)) <= _STANDS_STILL:
+        return np.zeros_like(root)
+    smooth = gaussian_filter1d(way, 0.6 * fps, axis=0, mode="nearest")
+    return np.asarray(smooth - smooth[0])
+
+
+def look(direction: ArrayLike) -> Floats:
+    """Rotation (3, 3) of an upright camera that stands in this direction from what it looks at."""
+    back = np.asarray(direction, dtype=np.float64)
+    back = back / np.linalg.norm(back)
+    right = np.cross((0.0, 1.0, 0.0), back)
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(back, right), back], axis=1)
+
+
+def framed(points: Floats, radii: Floats, rotation: Floats, aspect: float, margin: float = 1.06) -> Floats:
+    """The nearest place (3,) of a camera from which all points (N, 3), with radii (N,), are in the picture.
+
+    A point x right of and z before the picture's centre is inside if |x − cx| ≤ (D − z) tan(field / 2); with the
+    largest of x + z tan and −x + z tan over all points this is two linear bounds on cx and the distance D; so it is
+    for the other direction.
+    """
+    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    seen = (points - centre) @ rotation
+    tangents = np.array([aspect, 1.0]) * np.tan(FIELD / 2) / margin
+    slack = radii[:, None] * np.sqrt(1 + tangents**2)
+    beyond = (seen[:, :2] + seen[:, 2:] * tangents + slack).max(axis=0)
+    before = (-seen[:, :2] + seen[:, 2:] * tangents + slack).max(axis=0)
+    distance = float(np.max((beyond + before) / (2 * tangents)))
+    return np.asarray(centre + rotation @ np.array([*((beyond - before) / 2), distance]))
+
+
+def camera(figures: Group, aspect: float) -> Camera:
+    """A camera from which no point of any frame is cut off.
+
+    Parameters
+    ----------
+    aspect
+        Width over height of the picture.
+    """
+    rotation = look(figures.view)
+    points = (figures.points - figures.follow[:, None]).reshape(-1, 3)
+    radii = np.tile(figures.radii, len(figures.points))
+    return Camera(rotation, framed(points, radii, rotation, aspect) + figures.follow)
+
+
+def grid(figures: Group) -> Floats:
+    """Lines of the grid in the ZX plane, under all the figures' way: (L, 2, 3) metres."""
+    cell = figures.cell
+    reach = figures.points[:, :, [0, 2]].reshape(-1, 2)
+    low = np.floor(reach.min(axis=0) / cell - 1).astype(np.int64)
+    high = np.ceil(reach.max(axis=0) / cell + 1).astype(np.int64)
+    x = np.arange(low[0], high[0] + 1) * cell
+    z = np.arange(low[1], high[1] + 1) * cell
+    y = figures.floor
+    along_z = [((a, y, z[0]), (a, y, z[-1])) for a in x]
+    along_x = [((x[0], y, a), (x[-1], y, a)) for a in z]
+    return np.array(along_z + along_x, dtype=np.float64)
+

@@ -1,0 +1,31 @@
+"""pyrender without a display and under NumPy 2; all rendering imports it from here.
+
+Four defects of pyrender 0.1.45 are dealt with: its import needs a viewer's X11 libraries; it uses a name that NumPy
+has dropped; it draws in the order of a set, which makes pictures differ between runs; it looks for a window first.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import types
+
+os.environ.setdefault("PYOPENGL_PLATFORM", "egl")  # read when OpenGL is imported
+
+import numpy as np
+
+if not hasattr(np, "infty"):
+    np.infty = np.inf  # type: ignore[attr-defined]
+
+_viewer = types.ModuleType("pyrender.viewer")
+_viewer.Viewer = None  # type: ignore[attr-defined]
+sys.modules.setdefault("pyrender.viewer", _viewer)
+
+import pyrender  # noqa: E402
+from OpenGL import GL  # noqa: E402
+from pyrender.renderer import Renderer  # noqa: E402
+
+# Solid things only: nothing here needs pyrender's order from back to front.
+Renderer._sorted_mesh_nodes = lambda self, scene: sorted(scene.mesh_nodes, key=lambda node: node.name or "")
+
+__all__ = ["GL", "pyrender"]
