@@ -16,7 +16,7 @@ from miburi.kinematics import trunk_frame, unit, yaw_pitch_roll
 from miburi.motion import Floats, Motion
 from miburi.perform.puppeteer import body, plan
 from miburi.perform.puppeteer.chance import FPS, noise
-from miburi.perform.puppeteer.trunk import carry
+from miburi.perform.puppeteer.trunk import carry, heading_and_tilt
 from miburi.perform.puppeteer.users import User
 from miburi.store import seed
 
@@ -30,6 +30,10 @@ class Seen(NamedTuple):
     """(T, 4, 3) the same of elbows and knees."""
     frames: Floats
     """(T, 3, 3) the trunk in the world."""
+    shown: Floats
+    """(T, 4, 6) what catches the eye, in lengths of the person's leg (so a leg counts more than an arm that turns by
+    the same angle): the paths in the trunk's frame, which is what has to be moved on the puppet, and in one that
+    turns with the body but stays level, which is how the clip looks."""
 
 
 def _at(values: Floats, clock: Floats) -> Floats:
@@ -59,14 +63,19 @@ def watch(target: Motion, landmark: float) -> Seen:
     frames = trunk_frame(p["l_hip"], p["r_hip"], p["waist"], p["neck"])
     paths, elbows = np.empty((n, 4, 3)), np.empty((n, 4, 3))
     size = body.TRUNK / _length(p["neck"] - p["waist"])
+    heading = heading_and_tilt(frames)[0]
+    level = Rotation.from_rotvec(np.outer(heading, [0.0, 1.0, 0.0])).as_matrix()
+    shown = np.empty((n, 4, 6))
+    reach = [_length(p[m] - p[r]) + _length(p[e] - p[m]) for r, m, e in body.PARTS]
     for k, (root, middle, end) in enumerate(body.PARTS):
-        reach = _length(p[middle] - p[root]) + _length(p[end] - p[middle])
-        from_root = np.einsum("tba,tb->ta", frames, p[end] - p[root]) * (body.REACH[k] / reach)
+        for columns, frame in ((slice(0, 3), frames), (slice(3, 6), level)):
+            shown[:, k, columns] = np.einsum("tba,tb->ta", frame, p[end] - p[root])
+        from_root = shown[:, k, :3] * (body.REACH[k] / reach[k])
         from_waist = np.einsum("tba,tb->ta", frames, p[end] - p["waist"]) * size - body.ROOTS[k]
         share = landmark if k < 2 else 0.0  # feet are put by the legs' reach: the ground is not in the trunk's frame
         paths[:, k] = (1 - share) * from_root + share * from_waist
         elbows[:, k] = body.UPPER[k] * unit(np.einsum("tba,tb->ta", frames, p[middle] - p[root]), (0.0, -1.0, 0.0))
-    return Seen(paths, elbows, frames)
+    return Seen(paths, elbows, frames, shown / (np.sqrt(2) * max(reach[2:])))
 
 
 def _length(vectors: Floats) -> float:
@@ -79,10 +88,11 @@ def _within(paths: Floats) -> Floats:
     return paths * np.minimum(1.0, body.REACH / np.maximum(length, 1e-9))[..., None]
 
 
-def misjudge(paths: Floats, user: User, rng: np.random.Generator) -> Floats:
+def misjudge(seen: Seen, user: User, rng: np.random.Generator) -> Floats:
     """The paths (T, 4, 3) as the user plays them: of another size, turned, shifted and without quick detail."""
     h = user.habits
-    busy = int(plan.important(paths, h.ignore).sum())
+    paths = seen.paths
+    busy = int(plan.important(seen.shown, h.ignore).sum())
     harder = 1 + h.complexity * max(busy - 2, 0)
     size = np.exp(h.amplitude + h.amplitude_error * harder * rng.normal(size=4))
     turned = np.radians(h.direction_error * harder) / np.sqrt(3) * rng.normal(size=(4, 3))
@@ -170,8 +180,8 @@ def imitate(target: Motion, user: User, *, seed_parts: tuple[object, ...]) -> tu
     h = user.habits
     rng = seed("imitate", user.name, *seed_parts)
     seen = watch(target, h.landmark)
-    paths = misjudge(seen.paths, user, rng)
-    clock, held = plan.timeline(paths, paths + body.ROOTS, h, rng)
+    paths = misjudge(seen, user, rng)
+    clock, held = plan.timeline(seen.shown, paths, h, rng)
     start = _arrange(paths, seen.elbows, user, rng)
     n = len(clock)
     wanted = np.stack([_at(paths[:, k], clock[:, k]) for k in range(4)], axis=1)

@@ -11,18 +11,22 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, minimum_filter1d
 
 from miburi.motion import Floats
-from miburi.perform.puppeteer.body import REACH
+from miburi.perform.puppeteer.body import REACH, ROOTS
 from miburi.perform.puppeteer.chance import FPS
 from miburi.perform.puppeteer.users import Habits
 
-PINCH = 0.06
-"""Metres: two hands or two feet of the puppet that stay this close are held between one hand's fingers."""
+GRASP = 0.09
+"""Metres: two hands or two feet of the puppet that stay this close fit into one hand …"""
+TOGETHER = 0.35
+"""… which holds both only while what they do apart from each other is less than this share of what they do."""
 PHRASE_S = 0.5
 """Shortest piece of a clip that is played in one go."""
 JOIN_S = 0.4
 """Seconds in which a limb that is taken is brought to where it is wanted."""
 _STILL = 0.04
-"""A limb whose path spreads by less than this share of its reach does not move."""
+"""A limb whose path spreads by less than this, in lengths of a leg, does not move."""
+_GLARING = 0.6
+"""A limb that is out of place by more than this share of its reach is put right by everybody."""
 _KEPT = 1.3
 """A limb that is already held is worth more than another that moves as much."""
 
@@ -50,19 +54,19 @@ class Plan:
             self.at = clock[-1].copy()
 
 
-def important(paths: Floats, ignore: float) -> NDArray[np.bool_]:
-    """Which limbs the user means to move: (4,), from the paths (T, 4, 3) of hands and feet, metres."""
-    spread = np.sqrt(paths.var(axis=0).sum(axis=-1)) / REACH
+def important(shown: Floats, ignore: float) -> NDArray[np.bool_]:
+    """Which limbs the user means to move: (4,), from what hands and feet show (T, 4, D)."""
+    spread = np.sqrt(shown.var(axis=0).sum(axis=-1))
     return spread > max(_STILL, ignore * float(spread.max()))
 
 
-def phrases(paths: Floats) -> list[tuple[int, int]]:
-    """Cut a clip (T, L, 3) where it is slowest: pieces (first, last frame), each about half a second or more."""
-    n = len(paths)
+def phrases(shown: Floats) -> list[tuple[int, int]]:
+    """Cut a clip (T, L, D) where it is slowest: pieces (first, last frame), each about half a second or more."""
+    n = len(shown)
     width = round(PHRASE_S * FPS)
     if n < 2 * width:
         return [(0, n - 1)]
-    speed = gaussian_filter1d(np.linalg.norm(np.diff(paths, axis=0), axis=-1).sum(axis=-1), 0.05 * FPS)
+    speed = gaussian_filter1d(np.linalg.norm(np.diff(shown, axis=0), axis=-1).sum(axis=-1), 0.05 * FPS)
     slow = np.flatnonzero((speed == minimum_filter1d(speed, 2 * width - 1)) & (speed < speed.mean()))
     cuts = [0]
     for t in slow.tolist():
@@ -71,24 +75,27 @@ def phrases(paths: Floats) -> list[tuple[int, int]]:
     return list(zip(cuts, [*cuts[1:], n - 1], strict=True))
 
 
-def _grips(paths: Floats, places: Floats, wanted: Sequence[int]) -> list[tuple[int, ...]]:
-    """What one hand can hold in a phrase: a limb, or a pair of which both ends stay close together."""
+def _grips(places: Floats, wanted: Sequence[int]) -> list[tuple[int, ...]]:
+    """What one hand can hold in a phrase: a limb, or a pair of which both ends stay close and move alike."""
     units: list[tuple[int, ...]] = [(k,) for k in wanted]
     for pair in ((0, 1), (2, 3)):
-        apart = np.linalg.norm(places[:, pair[0]] - places[:, pair[1]], axis=-1).max()
-        if pair[0] in wanted and pair[1] in wanted and apart < PINCH:
+        if not set(pair) <= set(wanted):
+            continue
+        between = places[:, pair[0]] - places[:, pair[1]]
+        travel = np.linalg.norm(places - places[0], axis=-1).max(axis=0)[list(pair)].min()
+        own = np.linalg.norm(between - between.mean(axis=0), axis=-1).max()
+        if np.median(np.linalg.norm(between, axis=-1)) < GRASP and own < TOGETHER * travel:
             units.append(pair)
     return units
 
 
-def lead(paths: Floats, places: Floats, value: Floats, habits: Habits) -> list[int]:
+def lead(places: Floats, value: Floats, habits: Habits) -> list[int]:
     """The limbs that the hands hold in a phrase: those that are worth most together.
 
-    paths, places (T, 4, 3): hands and feet from their roots, and in the trunk's frame; value (4,): 0 for limbs that
-    need no hand.
+    places (T, 4, 3): hands and feet in the trunk's frame; value (4,): 0 for limbs that need no hand.
     """
     wanted = [k for k in range(4) if value[k] > 0]
-    units = _grips(paths, places, wanted)
+    units = _grips(places, wanted)
     best: tuple[float, list[int]] = (0.0, [])
     for n in range(1, habits.grips + 1):
         for chosen in combinations(units, n):
@@ -111,15 +118,17 @@ def _samples(seconds: float) -> int:
     return round(seconds * FPS)
 
 
-def timeline(paths: Floats, places: Floats, habits: Habits, rng: np.random.Generator) -> tuple[Floats, NDArray[np.bool_]]:
+def timeline(
+    shown: Floats, paths: Floats, habits: Habits, rng: np.random.Generator
+) -> tuple[Floats, NDArray[np.bool_]]:
     """Plan how a clip is played.
 
     Parameters
     ----------
+    shown : (T, 4, D)
+        What the clip shows of hands and feet, lengths of a leg: decides which limbs matter and when.
     paths : (T, 4, 3)
-        Where hands and feet are wanted from shoulders and hips, at 60 frames/s, metres on the puppet.
-    places : (T, 4, 3)
-        The same from the waist.
+        Where the user means to bring hands and feet from shoulders and hips, metres on the puppet.
 
     Returns
     -------
@@ -128,17 +137,16 @@ def timeline(paths: Floats, places: Floats, habits: Habits, rng: np.random.Gener
     held : (N, 4)
         Who is in the user's hands; at most `habits.limbs` at once.
     """
-    meant = important(paths, habits.ignore)
+    meant = important(shown, habits.ignore)
     plan = Plan()
-    pieces = phrases(paths[:, meant]) if meant.any() else [(0, len(paths) - 1)]
+    pieces = phrases(shown[:, meant]) if meant.any() else [(0, len(paths) - 1)]
     held: list[int] = []
     plan.add(_samples(habits.reach_in_s * rng.uniform(0.3, 0.6)), [])  # the hands come near
     for number, (a, b) in enumerate(pieces):
-        phrase, where = paths[a : b + 1], places[a : b + 1]
-        travel = np.linalg.norm(phrase - phrase[0], axis=-1).max(axis=0) * meant
-        worth = np.where(travel > _STILL * REACH, travel, 0.0)
+        travel = meant * np.linalg.norm(shown[a : b + 1] - shown[a], axis=-1).max(axis=0)
+        worth = np.where(travel > _STILL, travel, 0.0)
         worth[held] *= _KEPT
-        led = lead(phrase, where, worth, habits) or held
+        led = lead(paths[a : b + 1] + ROOTS, worth, habits) or held
         if number == 0:
             plan.add(_samples(habits.reach_in_s * rng.uniform(0.3, 0.5)), led)  # … and take hold
         elif led != held:
@@ -148,7 +156,7 @@ def timeline(paths: Floats, places: Floats, habits: Habits, rng: np.random.Gener
         pace = float(np.clip(habits.tempo * np.exp(habits.tempo_error * rng.normal()), 0.5, 2.0))
         n = max(round((b - a) / pace), 1)
         plan.add(n, led, _uneven(a, b, n, habits.tempo_error, rng), trunk=True)
-        held = _afterwards(plan, led, paths, places, (a, b), travel, habits, rng)
+        held = _afterwards(plan, led, meant, paths, (a, b), habits, rng)
     plan.add(_samples(0.25 * min(habits.reach_in_s, 1.0)), held)  # the fingers open
     plan.add(_samples(habits.reach_in_s * rng.uniform(0.3, 0.6)), [])
     return np.concatenate(plan.clock), np.concatenate(plan.held)
@@ -157,10 +165,9 @@ def timeline(paths: Floats, places: Floats, habits: Habits, rng: np.random.Gener
 def _afterwards(
     plan: Plan,
     led: list[int],
+    meant: NDArray[np.bool_],
     paths: Floats,
-    places: Floats,
     phrase: tuple[int, int],
-    travel: Floats,
     habits: Habits,
     rng: np.random.Generator,
 ) -> list[int]:
@@ -170,21 +177,20 @@ def _afterwards(
     where it belongs.
     """
     a, b = phrase
-    due = habits.care * REACH
+    travel = np.linalg.norm(paths[a : b + 1] - paths[a], axis=-1).max(axis=0) / REACH
     reached = paths[plan.at[:4].astype(np.intp), np.arange(4)]
-    off = np.linalg.norm(paths[b] - reached, axis=-1)
-    late = [k for k in range(4) if k not in led and travel[k] > 0 and max(travel[k], off[k]) > due[k]]
-    late = [k for k in late if rng.random() < habits.patience]
+    off = np.linalg.norm(paths[b] - reached, axis=-1) / REACH
+    missed = np.maximum(travel, off)
+    late = [k for k in range(4) if meant[k] and k not in led and missed[k] > habits.care]
+    late = [k for k in late if off[k] > _GLARING or rng.random() < habits.patience]
     held = led
     while late:
         value = np.zeros(4)
-        value[late] = np.maximum(travel, off)[late]
-        group = lead(paths[a : b + 1], places[a : b + 1], value, habits)
+        value[late] = missed[late]
+        held = lead(paths[a : b + 1] + ROOTS, value, habits)
         plan.add(_samples(habits.regrip_s * rng.uniform(0.7, 1.3)), [])
-        moved = [k for k in group if travel[k] > due[k]]
         n = max(round((b - a) / min(2.0, 1.5 * habits.tempo)), _samples(JOIN_S))
-        clip = _uneven(a, b, n, habits.tempo_error, rng) if moved else np.full(n, float(b))
-        plan.add(n, group, clip)
-        late = [k for k in late if k not in group]
-        held = group
+        again = max(travel[k] for k in held) > habits.care
+        plan.add(n, held, _uneven(a, b, n, habits.tempo_error, rng) if again else np.full(n, float(b)))
+        late = [k for k in late if k not in held]
     return held
