@@ -24,8 +24,9 @@ sys.modules.setdefault("pyrender.viewer", _viewer)
 import pyrender  # noqa: E402
 from OpenGL import GL  # noqa: E402
 from pyrender.renderer import Renderer  # noqa: E402
+from pyrender.shader_program import ShaderProgramCache  # noqa: E402
 
 # Solid things only: nothing here needs pyrender's order from back to front.
 Renderer._sorted_mesh_nodes = lambda self, scene: sorted(scene.mesh_nodes, key=lambda node: node.name or "")
 
-__all__ = ["GL", "pyrender"]
+__all__ = ["GL", "ShaderProgramCache", "pyrender"]

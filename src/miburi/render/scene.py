@@ -1,21 +1,24 @@
 """One scene whose instances move: spheres at joints and ends, cylinders along bones, a grid in the ZX plane.
 
-All spheres are one draw and all bones another; between two frames only the instances' poses go to the GPU.
+All spheres are one draw and all bones another; between two frames only the instances' poses go to the GPU. Only the
+halves that face the eye are drawn.
 """
 
 from __future__ import annotations
 
 import ctypes
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from miburi.errors import InputError
+from miburi.kinematics import unit
 from miburi.motion import Floats, Motion
 from miburi.render import figure
-from miburi.render.gl import GL, pyrender
+from miburi.render.gl import GL, ShaderProgramCache, pyrender
 
 Picture = NDArray[np.uint8]
 
@@ -41,13 +44,12 @@ class Instances(pyrender.Primitive):  # type: ignore[misc]
     """
 
     def __init__(self, positions: Floats, normals: Floats, indices: NDArray[np.int64], colours: Floats) -> None:
-        material = pyrender.MetallicRoughnessMaterial(metallicFactor=0.0, roughnessFactor=0.65)
         super().__init__(
             positions,
             normals=normals,
             color_0=np.ones((len(positions), 4)),
             indices=indices,
-            material=material,
+            material=pyrender.MetallicRoughnessMaterial(),
             poses=np.tile(np.eye(4), (len(colours), 1, 1)),
         )
         self._colours = np.ascontiguousarray(colours, dtype=np.float32)
@@ -79,53 +81,64 @@ class Instances(pyrender.Primitive):  # type: ignore[misc]
             self._moved = False
 
 
-def sphere(around: int = 24, down: int = 12) -> tuple[Floats, Floats, NDArray[np.int64]]:
-    """Vertices, normals and triangles of a sphere of radius 1."""
-    theta, phi = np.meshgrid(np.linspace(0, np.pi, down + 1), np.linspace(0, 2 * np.pi, around + 1), indexing="ij")
-    points = np.stack([np.sin(theta) * np.sin(phi), np.cos(theta), np.sin(theta) * np.cos(phi)], axis=-1)
-    vertices = points.reshape(-1, 3)
-    return vertices, vertices.copy(), _quads(down, around)
+def dome(rim: int = 20) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    """Vertices, normals and triangles of the half of a unit sphere that faces +z.
+
+    What is turned to the eye is all that is seen of a sphere. A software rasteriser takes its time by the triangle, so
+    there are many where the outline is (`rim`, an even number) and few inside, where normals make it round.
+    """
+    n = rim // 2
+    angles = (np.arange(rim) * 2 * np.pi / rim, np.arange(n) * 2 * np.pi / n)
+    rings = [
+        np.stack([np.cos(a) * np.sin(t), np.sin(a) * np.sin(t), np.full_like(a, np.cos(t))], axis=1)
+        for a, t in zip(angles, (np.pi / 2, 0.95), strict=True)
+    ]
+    vertices = np.concatenate([*rings, [[0.0, 0.0, 1.0]]])
+    i = np.arange(n)
+    outer, middle, next_outer = 2 * i, 2 * i + 1, (2 * i + 2) % rim
+    inner, next_inner, pole = rim + i, rim + (i + 1) % n, np.full(n, rim + n)
+    faces = (
+        (outer, middle, inner),
+        (middle, next_inner, inner),
+        (middle, next_outer, next_inner),
+        (inner, next_inner, pole),
+    )
+    return vertices, vertices.copy(), np.concatenate([np.stack(f, axis=1) for f in faces])
 
 
-def cylinder(around: int = 16) -> tuple[Floats, Floats, NDArray[np.int64]]:
-    """Vertices, normals and triangles of an open cylinder of radius 1 about y, from y = 0 to y = 1."""
-    phi = np.linspace(0, 2 * np.pi, around + 1)
-    ring = np.stack([np.sin(phi), np.zeros_like(phi), np.cos(phi)], axis=-1)
-    vertices = np.concatenate([ring + (0.0, 1.0, 0.0), ring])
-    return vertices, np.concatenate([ring, ring]), _quads(1, around)
+def trough(strips: int = 6) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    """Vertices, normals and triangles of the half of a cylinder that faces +z: radius 1, from y = 0 to y = 1."""
+    phi = np.linspace(-np.pi / 2, np.pi / 2, strips + 1)
+    arc = np.stack([np.sin(phi), np.zeros_like(phi), np.cos(phi)], axis=-1)
+    a = np.arange(strips)
+    b = a + strips + 1
+    faces = np.concatenate([np.stack([a, a + 1, b + 1], axis=1), np.stack([a, b + 1, b], axis=1)])
+    return np.concatenate([arc, arc + (0.0, 1.0, 0.0)]), np.concatenate([arc, arc]), faces
 
 
-def _quads(rows: int, columns: int) -> NDArray[np.int64]:
-    """Triangles of a grid of vertices, rows + 1 by columns + 1, counter-clockwise from outside."""
-    r, c = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
-    a = (r * (columns + 1) + c).ravel()
-    b = a + columns + 1
-    return np.concatenate([np.stack([a, b, b + 1], axis=1), np.stack([a, b + 1, a + 1], axis=1)])
+def dome_poses(points: Floats, radii: Floats, eye: Floats) -> Floats:
+    """Poses (N, 4, 4) of domes at points (N, 3) with radii (N,), turned to the eye (3,)."""
+    z = unit(eye - points, (0.0, 0.0, 1.0))
+    x = unit(np.cross((0.0, 1.0, 0.0), z), (1.0, 0.0, 0.0))
+    return _poses(x, np.cross(z, x), z, points, radii[:, None, None])
 
 
-def sphere_poses(points: Floats, radii: Floats) -> Floats:
-    """Poses (N, 4, 4) of spheres at points (N, 3) with radii (N,)."""
-    poses = np.zeros((len(points), 4, 4))
-    poses[:, 0, 0] = poses[:, 1, 1] = poses[:, 2, 2] = radii
-    poses[:, :3, 3] = points
-    poses[:, 3, 3] = 1.0
-    return poses
-
-
-def bone_poses(tails: Floats, heads: Floats, radii: Floats) -> Floats:
-    """Poses (N, 4, 4) of unit cylinders from tails to heads, each (N, 3), with radii (N,)."""
+def trough_poses(tails: Floats, heads: Floats, radii: Floats, eye: Floats) -> Floats:
+    """Poses (N, 4, 4) of half cylinders from tails to heads, each (N, 3), with radii (N,), turned to the eye (3,)."""
     along = heads - tails
-    length = np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
-    y = along / length
-    # square to the bone: with the axis that it points along least
-    helper = np.eye(3)[np.argmin(np.abs(y), axis=1)]
-    x = np.cross(y, helper)
-    x /= np.maximum(np.linalg.norm(x, axis=1, keepdims=True), 1e-9)
-    poses = np.zeros((len(along), 4, 4))
-    poses[:, :3, 0] = x * radii[:, None]
-    poses[:, :3, 1] = along
-    poses[:, :3, 2] = np.cross(x, y) * radii[:, None]
-    poses[:, :3, 3] = tails
+    y = unit(along)
+    x = np.cross(y, eye - tails)
+    thin = np.linalg.norm(x, axis=1) < 1e-9  # a bone that points at the eye
+    x[thin] = np.cross(y[thin], (1.0, 0.0, 0.0))
+    x = unit(x, (1.0, 0.0, 0.0))
+    r = radii[:, None]
+    return _poses(x * r, along, np.cross(x, y) * r, tails, np.ones((len(along), 1, 1)))
+
+
+def _poses(x: Floats, y: Floats, z: Floats, places: Floats, scale: Floats) -> Floats:
+    poses = np.zeros((len(places), 4, 4))
+    poses[:, :3, :3] = np.stack([x, y, z], axis=2) * scale
+    poses[:, :3, 3] = places
     poses[:, 3, 3] = 1.0
     return poses
 
@@ -166,53 +179,52 @@ def frames(
     group = figure.group(shown)
     camera = figure.camera(group, width / height)
     scene, spheres, bones, eye = build(group, width / height, camera)
-    renderer = pyrender.OffscreenRenderer(width, height)
-    renderer._renderer._read_main_framebuffer = lambda scene, flags: _read(renderer._renderer)
+    renderer = offscreen(width, height)
     try:
         for k in range(len(group.points)) if at is None else at:
             points = group.points[k]
-            spheres.move(sphere_poses(points, group.radii))
-            bones.move(bone_poses(points[group.bones[:, 0]], points[group.bones[:, 1]], group.bone_radii))
+            tails, heads = points[group.bones[:, 0]], points[group.bones[:, 1]]
+            spheres.move(dome_poses(points, group.radii, camera.places[k]))
+            bones.move(trough_poses(tails, heads, group.bone_radii, camera.places[k]))
             scene.set_pose(eye, pose(camera.rotation, camera.places[k]))
             yield renderer.render(scene)
     finally:
         renderer.delete()
 
 
+def offscreen(width: int, height: int) -> Any:
+    """pyrender's renderer with shaders and a way to read pictures of our own (its own take most of a frame's time)."""
+    renderer = pyrender.OffscreenRenderer(width, height)
+    inner = renderer._renderer
+    inner._program_cache = ShaderProgramCache(str(Path(__file__).parent / "shaders"))
+    inner._read_main_framebuffer = lambda scene, flags: _read(inner)
+    return renderer
+
+
 def build(group: figure.Group, aspect: float, camera: figure.Camera) -> tuple[Any, Instances, Instances, Any]:
-    """The scene: instances of spheres and of bones, a grid, lights that stand with the camera.
+    """The scene: instances of spheres and of bones, and a grid; the shaders hold the lights.
 
     Returns
     -------
     scene, spheres, bones, eye
         pyrender's scene, what moves in it, and the camera's node.
     """
-    scene = pyrender.Scene(bg_color=BACKGROUND, ambient_light=(0.35, 0.35, 0.35))
-    spheres = Instances(*sphere(), _linear(group.colours))
-    bones = Instances(*cylinder(), _linear(group.bone_colours))
+    scene = pyrender.Scene(bg_color=BACKGROUND)
+    spheres = Instances(*dome(), group.colours)
+    bones = Instances(*trough(), group.bone_colours)
     for name, primitive in (("1 spheres", spheres), ("2 bones", bones), ("3 grid", _grid(figure.grid(group)))):
         scene.add(pyrender.Mesh([primitive]), name=name)
     far = float(np.linalg.norm(camera.places[0] - group.points[0].mean(axis=0)))
     eye = pyrender.PerspectiveCamera(yfov=figure.FIELD, aspectRatio=aspect, znear=0.05 * far, zfar=20.0 * far)
     node = scene.add(eye, pose=pose(camera.rotation, camera.places[0]), name="camera")
-    for name, direction, strength in (("key", (-0.5, 0.8, 0.9), 3.2), ("fill", (0.9, 0.1, 0.5), 1.2)):
-        light = pyrender.DirectionalLight(color=np.ones(3), intensity=strength)
-        scene.add(light, pose=pose(figure.look(camera.rotation @ np.array(direction)), np.zeros(3)), name=name)
     return scene, spheres, bones, node
-
-
-def _linear(colours: Floats) -> Floats:
-    """Colours (…, 4) as light, of which pyrender takes the 2.2nd root at the end."""
-    return np.asarray(colours**2.2)
 
 
 def _grid(lines: Floats) -> Any:
     """The grid as one primitive of lines."""
     points = lines.reshape(-1, 3)
-    material = pyrender.MetallicRoughnessMaterial(metallicFactor=0.0, roughnessFactor=1.0)
-    return pyrender.Primitive(
-        points, color_0=np.tile(_linear(np.array(_GRID_COLOUR)), (len(points), 1)), material=material, mode=1
-    )
+    colours = np.tile(_GRID_COLOUR, (len(points), 1))
+    return pyrender.Primitive(points, color_0=colours, material=pyrender.MetallicRoughnessMaterial(), mode=1)
 
 
 def _read(renderer: Any) -> Picture:
