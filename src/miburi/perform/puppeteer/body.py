@@ -11,14 +11,19 @@ from miburi.motion import Floats
 STEP = 300.0 / 1023.0
 """Degrees that one count of a potentiometer of 300° on a 10-bit converter stands for ([P])."""
 
-LIMBS = ("l_arm", "r_arm", "l_leg", "r_leg")
-PARTS = (("l_shoulder", "l_elbow", "l_hand"), ("r_shoulder", "r_elbow", "r_hand"))
-PARTS += (("l_hip", "l_knee", "l_foot"), ("r_hip", "r_knee", "r_foot"))
+PARTS = (
+    ("l_shoulder", "l_elbow", "l_hand"),
+    ("r_shoulder", "r_elbow", "r_hand"),
+    ("l_hip", "l_knee", "l_foot"),
+    ("r_hip", "r_knee", "r_foot"),
+)
+"""Root, middle and end joint of the four limbs: left arm, right arm, left leg, right leg."""
 SIDE = np.array([1.0, -1.0, 1.0, -1.0])
 
-# Metres. [P]: 33 cm tall, arm span 44 cm. How the height is shared is not printed; this doll has long arms, short
-# legs and a long trunk beside a person, as the two printed figures ask for: 0.062 head, 0.110 trunk, 0.013 from waist
-# to hips, 0.132 legs, 0.013 feet; 0.086 between the shoulders, 0.155 to each wrist, 0.022 hands.
+# Metres. [P]: 33 cm tall, arm span 44 cm. How the height is shared is not printed; this doll has long arms,
+# short legs and a long trunk beside a person, as the two printed figures ask for: 0.062 head, 0.110 trunk,
+# 0.013 from waist to hips, 0.132 legs, 0.013 feet; 0.086 between the shoulders, 0.155 to each wrist, 0.022
+# hands.
 TRUNK = 0.110
 SHOULDER = np.array([0.043, 0.102, 0.0])
 HIP = np.array([0.024, -0.013, 0.0])
@@ -68,10 +73,17 @@ def quantise(angles: Floats) -> Floats:
     return counts * STEP + 0.0  # no negative zeros
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _turn(q, v, out):  # type: ignore[no-untyped-def]
     """out[0] = R v with R = Rz(z) Rx(−x) Ry(y), q = (z, x, y); out[1..3] its derivatives by z, x, y."""
-    cz, sz, cx, sx, cy, sy = np.cos(q[0]), np.sin(q[0]), np.cos(q[1]), np.sin(q[1]), np.cos(q[2]), np.sin(q[2])
+    cz, sz, cx, sx, cy, sy = (
+        np.cos(q[0]),
+        np.sin(q[0]),
+        np.cos(q[1]),
+        np.sin(q[1]),
+        np.cos(q[2]),
+        np.sin(q[2]),
+    )
     for k in range(4):  # 0: as it is, 1: by z, 2: by x, 3: by y
         if k == 3:
             a, b, c = v[2] * cy - v[0] * sy, 0.0, -v[2] * sy - v[0] * cy
@@ -87,14 +99,14 @@ def _turn(q, v, out):  # type: ignore[no-untyped-def]
             out[k, 0], out[k, 1], out[k, 2] = a * cz - b * sz, a * sz + b * cz, c
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _tip(bend, upper, lower, leg):  # type: ignore[no-untyped-def]
     """Hand or foot from shoulder or hip before R turns it: elbows bend forward, knees backward."""
     forward = -lower * np.sin(bend) if leg else lower * np.sin(bend)
     return np.array([0.0, -upper - lower * np.cos(bend), forward])
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _step(q, hand, elbow, weight, v, upper, ranges):  # type: ignore[no-untyped-def]
     """One damped least-squares step of (z, x, y) towards the wanted places; returns the largest change."""
     a, b = np.empty((4, 3)), np.empty((4, 3))
@@ -119,12 +131,12 @@ def _step(q, hand, elbow, weight, v, upper, ranges):  # type: ignore[no-untyped-
     return largest
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def solve(q, hand, elbow, weight, upper, lower, leg, ranges):  # type: ignore[no-untyped-def]
     """Angles (z, x, y, bend), radians, of a left limb that reaches for `hand`, from the angles q on.
 
-    The bend follows from the distance (law of cosines), the rest from damped least squares; `elbow` counts with
-    `weight`. Each angle stays in its range.
+    The bend follows from the distance (law of cosines), the rest from damped least squares; `elbow` counts
+    with `weight`. Each angle stays in its range.
     """
     out = q.copy()
     distance = min(max(np.sqrt(np.sum(hand**2)), abs(upper - lower)), upper + lower)
@@ -137,11 +149,23 @@ def solve(q, hand, elbow, weight, upper, lower, leg, ranges):  # type: ignore[no
     return out
 
 
-# Other ways to begin: an arm that cannot get there from where it hangs may get there from the front or the side.
-_BEGINNINGS = np.radians(np.array([[0.0, 20.0, 0.0, 20.0], [90.0, 0.0, 0.0, 20.0], [30.0, 110.0, 0.0, 40.0]]))
+# Other ways to begin: an arm that cannot get there from where it hangs may get there from the front or the
+# side.
+_BEGINNINGS = np.radians(
+    np.array(
+        [
+            [0.0, 20.0, 0.0, 20.0],
+            [90.0, 0.0, 0.0, 20.0],
+            [30.0, 110.0, 0.0, 40.0],
+            [150.0, 0.0, 0.0, 40.0],
+            [60.0, 30.0, 60.0, 90.0],
+            [60.0, 30.0, -60.0, 90.0],
+        ]
+    )
+)
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def settle(q, hand, elbow, weight, upper, lower, leg, ranges):  # type: ignore[no-untyped-def]
     """`solve` from several beginnings, at leisure: the pose whose hand or foot comes closest."""
     best, least = q.copy(), np.inf
@@ -159,14 +183,18 @@ def settle(q, hand, elbow, weight, upper, lower, leg, ranges):  # type: ignore[n
     return best
 
 
-@njit(cache=True)  # type: ignore[misc]
-def follow(start, hands, elbows, held, join, weight, stick, upper, lower, leg, ranges):  # type: ignore[no-untyped-def]
+@njit(cache=True)
+def follow(  # type: ignore[no-untyped-def]
+    start, hands, elbows, held, join, weight, stick, upper, lower, leg, ranges
+):
     """Angles of a left limb over time.
 
-    A limb that nobody holds stays where it is. One that is taken starts where it is and is where it is wanted after
-    `join` frames (minimum jerk). A joint at rest sticks until it is pushed by more than `stick`.
+    A limb that nobody holds stays where it is. One that is taken starts where it is and is where it is
+    wanted after `join` frames (minimum jerk). A joint at rest sticks until it is pushed by more than
+    `stick`.
 
-    start (4,) radians; hands, elbows (T, 3) metres from shoulder or hip, trunk's frame; held (T,) bool; returns (T, 4).
+    start (4,) radians; hands, elbows (T, 3) metres from shoulder or hip, trunk's frame; held (T,) bool;
+    returns (T, 4).
     """
     out = np.empty((len(hands), 4))
     q = start.copy()

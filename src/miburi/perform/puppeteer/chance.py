@@ -16,4 +16,5 @@ def noise(n: int, width: int, seconds: float, rng: np.random.Generator) -> Float
     sigma = max(seconds * FPS, 0.5)
     margin = int(4 * sigma)
     white = gaussian_filter1d(rng.normal(size=(n + 2 * margin, width)), sigma, axis=0)
-    return white[margin : margin + n] * np.sqrt(2 * np.sqrt(np.pi) * sigma)
+    steady: Floats = white[margin : margin + n] * np.sqrt(2 * np.sqrt(np.pi) * sigma)
+    return steady

@@ -22,7 +22,8 @@ from miburi.store import seed
 
 
 class Seen(NamedTuple):
-    """What a user sees of a clip, at 60 frames/s: where the puppet's limbs should go, and how the trunk turns."""
+    """What a user sees of a clip, at 60 frames/s: where the puppet's limbs should go, and how the trunk
+    turns."""
 
     paths: Floats
     """(T, 4, 3) metres on the puppet: hands and feet from shoulders and hips, in the trunk's frame."""
@@ -31,9 +32,9 @@ class Seen(NamedTuple):
     frames: Floats
     """(T, 3, 3) the trunk in the world."""
     shown: Floats
-    """(T, 4, 6) what catches the eye, in lengths of the person's leg (so a leg counts more than an arm that turns by
-    the same angle): the paths in the trunk's frame, which is what has to be moved on the puppet, and in one that
-    turns with the body but stays level, which is how the clip looks."""
+    """(T, 4, 6) what catches the eye, in lengths of the person's leg (so a leg counts more than an arm that
+    turns by the same angle): the paths in the trunk's frame, which is what has to be moved on the puppet,
+    and in one that turns with the body but stays level, which is how the clip looks."""
 
 
 def _at(values: Floats, clock: Floats) -> Floats:
@@ -53,12 +54,12 @@ def watch(target: Motion, landmark: float) -> Seen:
     target
         A person.
     landmark
-        0: hands go by the arm's reach from the shoulder; 1: by the trunk's size from the waist (a hand on the hip
-        stays on the hip although the puppet's arms are long).
+        0: hands go by the arm's reach from the shoulder; 1: by the trunk's size from the waist (a hand on
+        the hip stays on the hip although the puppet's arms are long).
     """
     where = find_joints(target.skeleton)
     n = max(int((len(target) - 1) * FPS / target.fps), 0) + 1
-    places = _at(target.positions(), np.arange(n) * (target.fps / FPS))
+    places = _at(target.positions(), np.arange(n, dtype=np.float64) * (target.fps / FPS))
     p = {name: places[:, where[name]] for name in ("waist", *BODY_JOINTS)}
     frames = trunk_frame(p["l_hip"], p["r_hip"], p["waist"], p["neck"])
     paths, elbows = np.empty((n, 4, 3)), np.empty((n, 4, 3))
@@ -72,9 +73,13 @@ def watch(target: Motion, landmark: float) -> Seen:
             shown[:, k, columns] = np.einsum("tba,tb->ta", frame, p[end] - p[root])
         from_root = shown[:, k, :3] * (body.REACH[k] / reach[k])
         from_waist = np.einsum("tba,tb->ta", frames, p[end] - p["waist"]) * size - body.ROOTS[k]
-        share = landmark if k < 2 else 0.0  # feet are put by the legs' reach: the ground is not in the trunk's frame
+        share = (
+            landmark if k < 2 else 0.0
+        )  # feet are put by the legs' reach: the ground is not in the trunk's frame
         paths[:, k] = (1 - share) * from_root + share * from_waist
-        elbows[:, k] = body.UPPER[k] * unit(np.einsum("tba,tb->ta", frames, p[middle] - p[root]), (0.0, -1.0, 0.0))
+        elbows[:, k] = body.UPPER[k] * unit(
+            np.einsum("tba,tb->ta", frames, p[middle] - p[root]), (0.0, -1.0, 0.0)
+        )
     return Seen(paths, elbows, frames, shown / (np.sqrt(2) * max(reach[2:])))
 
 
@@ -85,11 +90,13 @@ def _length(vectors: Floats) -> float:
 def _within(paths: Floats) -> Floats:
     """Places (…, 4, 3) drawn in to what the limbs can reach."""
     length = np.linalg.norm(paths, axis=-1)
-    return paths * np.minimum(1.0, body.REACH / np.maximum(length, 1e-9))[..., None]
+    drawn: Floats = paths * np.minimum(1.0, body.REACH / np.maximum(length, 1e-9))[..., None]
+    return drawn
 
 
 def misjudge(seen: Seen, user: User, rng: np.random.Generator) -> Floats:
-    """The paths (T, 4, 3) as the user plays them: of another size, turned, shifted and without quick detail."""
+    """The paths (T, 4, 3) as the user plays them: of another size, turned, shifted and without quick
+    detail."""
     h = user.habits
     paths = seen.paths
     busy = int(plan.important(seen.shown, h.ignore).sum())
@@ -108,7 +115,8 @@ def _unsteady(n: int, user: User, rng: np.random.Generator) -> Floats:
     h = user.habits
     slow = noise(n, 12, 0.35, rng)
     quick = noise(n, 12, 0.012, rng) - noise(n, 12, 0.03, rng)
-    return ((h.wander * slow + h.tremor * quick) / np.sqrt(3)).reshape(n, 4, 3)
+    stray: Floats = ((h.wander * slow + h.tremor * quick) / np.sqrt(3)).reshape(n, 4, 3)
+    return stray
 
 
 def _knocks(held: NDArray[np.bool_], user: User, rng: np.random.Generator) -> Floats:
@@ -134,19 +142,26 @@ def _knocks(held: NDArray[np.bool_], user: User, rng: np.random.Generator) -> Fl
 def _arrange(paths: Floats, elbows: Floats, user: User, rng: np.random.Generator) -> Floats:
     """Angles (4, 4), radians, of the limbs before the log begins.
 
-    Friction holds a pose, so users put the limbs into the clip's first pose and then record. A limb that hangs about
-    right, or that they think unimportant and is not far off, is left as it hangs.
+    Friction holds a pose, so users put the limbs into the clip's first pose and then record. A limb that
+    hangs about right, or that they think unimportant and is not far off, is left as it hangs.
     """
     h = user.habits
     ranges = np.radians(body.RANGES)
-    hanging = np.clip(np.radians(h.mess) * rng.normal(size=(4, 4)), ranges[..., 0], ranges[..., 1])
-    out = hanging.copy()
+    hanging: Floats = np.clip(np.radians(h.mess) * rng.normal(size=(4, 4)), ranges[..., 0], ranges[..., 1])
+    out: Floats = hanging.copy()
     for k in range(4):
         rest = np.array([0.0, -body.REACH[k], 0.0])
         mirror = np.array([body.SIDE[k], 1.0, 1.0])
         if np.linalg.norm(paths[0, k] - rest) > h.care * body.REACH[k]:
             out[k] = body.settle(
-                hanging[k], paths[0, k] * mirror, elbows[0, k] * mirror, h.elbow, body.UPPER[k], body.LOWER[k], k > 1, ranges[k]
+                hanging[k],
+                paths[0, k] * mirror,
+                elbows[0, k] * mirror,
+                h.elbow,
+                body.UPPER[k],
+                body.LOWER[k],
+                k > 1,
+                ranges[k],
             )
     return out
 

@@ -18,7 +18,8 @@ from miburi.perform.puppeteer.users import Habits
 GRASP = 0.09
 """Metres: two hands or two feet of the puppet that stay this close fit into one hand …"""
 TOGETHER = 0.35
-"""… which holds both only while what they do apart from each other is less than this share of what they do."""
+"""… which holds both only while what they do apart from each other is less than this share of what they
+do."""
 PHRASE_S = 0.5
 """Shortest piece of a clip that is played in one go."""
 JOIN_S = 0.4
@@ -42,7 +43,8 @@ class Plan:
     at: Floats = field(default_factory=lambda: np.zeros(5))
 
     def add(self, n: int, limbs: Sequence[int], clip: Floats | None = None, *, trunk: bool = False) -> None:
-        """n samples in which `limbs` are held and play `clip` (n,) (absent: they wait), the trunk with them."""
+        """n samples in which `limbs` are held and play `clip` (n,) (absent: they wait), the trunk with
+        them."""
         clock = np.tile(self.at, (n, 1))
         if clip is not None:
             clock[:, [*limbs, *([4] if trunk else [])]] = clip[:, None]
@@ -57,11 +59,13 @@ class Plan:
 def important(shown: Floats, ignore: float) -> NDArray[np.bool_]:
     """Which limbs the user means to move: (4,), from what hands and feet show (T, 4, D)."""
     spread = np.sqrt(shown.var(axis=0).sum(axis=-1))
-    return spread > max(_STILL, ignore * float(spread.max()))
+    meant: NDArray[np.bool_] = spread > max(_STILL, ignore * float(spread.max()))
+    return meant
 
 
 def phrases(shown: Floats) -> list[tuple[int, int]]:
-    """Cut a clip (T, L, D) where it is slowest: pieces (first, last frame), each about half a second or more."""
+    """Cut a clip (T, L, D) where it is slowest: pieces (first, last frame), each about half a second or
+    more."""
     n = len(shown)
     width = round(PHRASE_S * FPS)
     if n < 2 * width:
@@ -173,8 +177,8 @@ def _afterwards(
 ) -> list[int]:
     """Move the limbs that had to wait, or leave them; returns who is held at the end.
 
-    A limb that travelled in the phrase plays it now, up to twice as fast; one that is only in the wrong place is put
-    where it belongs.
+    A limb that travelled in the phrase plays it now, up to twice as fast; one that is only in the wrong
+    place is put where it belongs.
     """
     a, b = phrase
     travel = np.linalg.norm(paths[a : b + 1] - paths[a], axis=-1).max(axis=0) / REACH

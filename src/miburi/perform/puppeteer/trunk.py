@@ -14,7 +14,8 @@ from miburi.perform.puppeteer.users import Habits, User
 _SETTLE_S = 0.3
 """Seconds in which the trunk tilts when it is put down, and in which it is jogged when it is taken."""
 _EASIER = 0.5
-"""The trunk is one stiff thing in the hand and upright is easy to judge: sizes err half as much as those of paths."""
+"""The trunk is one stiff thing in the hand and upright is easy to judge: sizes err half as much as those of
+paths."""
 
 
 def heading_and_tilt(frames: Floats) -> tuple[Floats, Floats]:
@@ -28,21 +29,24 @@ def heading_and_tilt(frames: Floats) -> tuple[Floats, Floats]:
         Rotation vector without a vertical part, at most π long.
     """
     q = Rotation.from_matrix(frames)
-    x, y, z, w = np.moveaxis(q.as_quat(), -1, 0)
-    heading = np.unwrap(2 * np.arctan2(y, w))
+    quaternion = q.as_quat()
+    heading = np.unwrap(2 * np.arctan2(quaternion[:, 1], quaternion[:, 3]))
     tilt = (q * Rotation.from_rotvec(np.outer(heading, [0.0, 1.0, 0.0])).inv()).as_rotvec()
     return heading, tilt
 
 
 def _limited(rotations: Rotation, h: Habits) -> Rotation:
-    """A trunk that turns a share of what it should and tilts no further than the stand or the user's back lets it."""
+    """A trunk that turns a share of what it should and tilts no further than the stand or the user's back
+    lets it."""
     heading, tilt = heading_and_tilt(rotations.as_matrix())
     size = np.linalg.norm(tilt, axis=-1, keepdims=True)
     limit = np.radians(h.trunk_limit)
     tilt = tilt / np.maximum(size, 1e-9) * limit * np.tanh(h.trunk_gain * size / limit)
     # a trunk past upside down tilts the other way: the stand takes its time
     tilt = gaussian_filter1d(tilt, 0.1 * FPS, axis=0, mode="nearest")
-    return Rotation.from_rotvec(tilt) * Rotation.from_rotvec(np.outer(h.trunk_gain * heading, [0.0, 1.0, 0.0]))
+    return Rotation.from_rotvec(tilt) * Rotation.from_rotvec(
+        np.outer(h.trunk_gain * heading, [0.0, 1.0, 0.0])
+    )
 
 
 def _misjudged(rotations: Rotation, log_size: float) -> Rotation:
@@ -65,7 +69,8 @@ def _blurred(rotations: Rotation, seconds: float) -> Rotation:
 
 
 def _unsteady(n: int, span: tuple[int, int], h: Habits, rng: np.random.Generator) -> Rotation:
-    """How the trunk strays: held crooked, drifting, shaking, jogged when it is taken and tilted when it is left."""
+    """How the trunk strays: held crooked, drifting, shaking, jogged when it is taken and tilted when it is
+    left."""
     crooked = h.tilt * rng.normal(size=3) * [1.0, 0.3, 1.0]
     away = h.drift * noise(n, 3, 1.5, rng) + h.shake * (noise(n, 3, 0.012, rng) - noise(n, 3, 0.03, rng))
     jog, leave = 0.5 * h.tilt * rng.normal(size=(2, 3))
@@ -76,7 +81,9 @@ def _unsteady(n: int, span: tuple[int, int], h: Habits, rng: np.random.Generator
     return Rotation.from_rotvec(np.radians(crooked + away + jog * taken + leave * left))
 
 
-def carry(frames: Floats, clock: Floats, span: tuple[int, int], user: User, rng: np.random.Generator) -> Floats:
+def carry(
+    frames: Floats, clock: Floats, span: tuple[int, int], user: User, rng: np.random.Generator
+) -> Floats:
     """The trunk's rotations while a clip is played.
 
     Parameters

@@ -1,7 +1,8 @@
 """Who plays the puppet: users, their skill and their habits.
 
-All figures here were fixed from what [P] says and from common knowledge of hands before any query was ranked. None
-was chosen by looking at a test user.
+The figures in this module were fixed from what [P] says and from common knowledge of hands before any query
+was ranked. The rules of `plan` and `trunk` were mended after looking at plays of development users; no test
+user was looked at.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ SKILL = (0.2, 0.8)
 """[P]'s users had no animation skills; none is a master (1) and none is hopeless (0)."""
 
 TEMPO = (0.6, 1.6)
-"""A person plays at a pace of their own; with `tempo_error` the pace stays between half and twice the clip's."""
+"""A person plays at a pace of their own; with `tempo_error` the pace stays between half and twice the
+clip's."""
 
 
 @dataclass(frozen=True)
@@ -32,13 +34,15 @@ class Habits:
 
     # "Users can move only two limbs at once"; one hand holds the trunk or both are free.
     grips: int
-    """Free hands. A hand holds one limb, or both hands or both feet of the puppet while they are close together."""
+    """Free hands. A hand holds one limb, or both hands or both feet of the puppet while they are close
+    together."""
     limbs: int
     """Most limbs that move at once."""
     patience: float
     """Chance that a limb that had to wait is moved afterwards, not left."""
     ignore: float
-    """A limb that moves less than this share of what the busiest limb does is judged unimportant and left still."""
+    """A limb that moves less than this share of what the busiest limb does is judged unimportant and left
+    still."""
     care: float
     """A limb is moved afterwards only if it missed more than this share of its reach."""
     regrip_s: float
@@ -46,7 +50,8 @@ class Habits:
 
     # "Users follow the paths of the hands and feet, not the joint angles", on a body of other proportions.
     landmark: float
-    """0: hands are put where they are from the shoulder, by the arm's reach; 1: where they are by the trunk."""
+    """0: hands are put where they are from the shoulder, by the arm's reach; 1: where they are by the
+    trunk."""
     elbow: float
     """How much the place of elbow and knee counts beside that of hand and foot."""
 
@@ -102,19 +107,23 @@ class Habits:
 
 
 def perfect() -> Habits:
-    """Habits of a user who errs in nothing and has a hand for every limb: a yardstick, never a query's user."""
-    zeros = dict.fromkeys(Habits.__dataclass_fields__, 0.0)
-    whole = {"grips": 4, "limbs": 4, "elbow": 0.3, "tempo": 1.0, "trunk_gain": 1.0, "trunk_limit": 180.0}
-    return Habits(**(zeros | whole))  # type: ignore[arg-type]
+    """Habits of a user who errs in nothing and has a hand for every limb: a yardstick, never a query's
+    user."""
+    zeros = dict.fromkeys(set(Habits.__dataclass_fields__) - {"grips", "limbs"}, 0.0)
+    whole = {"elbow": 0.3, "tempo": 1.0, "trunk_gain": 1.0, "trunk_limit": 180.0}
+    return Habits(grips=4, limbs=4, **(zeros | whole))
 
 
-# What the three ways of holding the puppet allow. On the hand: the trunk goes where it is carried, one hand is left.
-# On a stage: two hands for the limbs, the stand turns and tilts a little. Strapped to the own chest: the trunk does
-# what the user's does who must stay on their feet; both hands are free, working half blind below the chin.
+# What the three ways of holding the puppet allow. On the hand: the trunk goes where it is carried, one hand
+# is left. On a stage: two hands for the limbs, the stand turns and tilts a little. Strapped to the own
+# chest: the trunk does what the user's does who must stay on their feet; both hands are free, working half
+# blind below the chin.
+_GRIPS = {"hand": 1, "stage": 2, "strapped": 2}
+_TRUNK_GAIN = {"hand": (1.0, 1.0), "stage": (0.1, 0.4), "strapped": (0.7, 1.0)}
 _HOLDING = {
-    "hand": {"grips": 1, "trunk_gain": (1.0, 1.0), "trunk_limit": 180.0, "tilt": 6.0, "drift": 6.0, "shake": 0.4},
-    "stage": {"grips": 2, "trunk_gain": (0.1, 0.4), "trunk_limit": 20.0, "tilt": 2.0, "drift": 0.5, "shake": 0.0},
-    "strapped": {"grips": 2, "trunk_gain": (0.7, 1.0), "trunk_limit": 60.0, "tilt": 6.0, "drift": 3.0, "shake": 0.3},
+    "hand": {"trunk_limit": 180.0, "tilt": 6.0, "drift": 6.0, "shake": 0.4},
+    "stage": {"trunk_limit": 20.0, "tilt": 2.0, "drift": 0.5, "shake": 0.0},
+    "strapped": {"trunk_limit": 60.0, "tilt": 6.0, "drift": 3.0, "shake": 0.3},
 }
 _STRAPPED_CLUMSINESS = 1.3
 
@@ -172,28 +181,28 @@ class User:
 def habits(style: str, skill: float, rng: np.random.Generator) -> Habits:
     """The habits of a user who holds the puppet in this way and has this skill.
 
-    The draws do not depend on style and skill, so that the same generator gives the same person at another skill.
+    The draws do not depend on style and skill, so that the same generator gives the same person at another
+    skill.
     """
-    holding = dict(_HOLDING[style])
-    low, high = holding.pop("trunk_gain")  # type: ignore[misc]
+    gain = _TRUNK_GAIN[style]
     u = rng.random(3)
     bias = float(np.clip(rng.normal(), -2.0, 2.0))
-    settings: dict[str, float] = {k: a + (b - a) * skill for k, (a, b) in _BY_SKILL.items()}
+    settings = {k: a + (b - a) * skill for k, (a, b) in _BY_SKILL.items()} | _HOLDING[style]
     if style == "strapped":
         for key in ("direction_error", "placement_error", "wander"):
             settings[key] *= _STRAPPED_CLUMSINESS
     for key in ("tilt", "drift"):
-        holding[key] = float(holding[key]) * (1.5 - skill)  # type: ignore[arg-type]
+        settings[key] *= 1.5 - skill
     return Habits(
-        **holding,  # type: ignore[arg-type]
-        **settings,
+        grips=_GRIPS[style],
         limbs=2,
         landmark=_LANDMARK * float(u[0]),
         amplitude=_AMPLITUDE * bias,
         complexity=_COMPLEXITY,
         tempo=float(TEMPO[0] * (TEMPO[1] / TEMPO[0]) ** u[1]),
-        trunk_gain=float(low + (high - low) * u[2]),
+        trunk_gain=float(gain[0] + (gain[1] - gain[0]) * u[2]),
         stick=_STICK,
+        **settings,
     )
 
 
@@ -205,8 +214,8 @@ def users(experiment: str, split: str, n: int, config_seed: object = 0) -> list[
     experiment
         The experiment's name: another experiment has other users.
     split
-        "development" or "test". The split is part of each name and of what each user is drawn from, so no user is
-        in both.
+        "development" or "test". The split is part of each name and of what each user is drawn from, so no
+        user is in both.
     n
         How many; the three styles take turns.
     config_seed
@@ -223,7 +232,9 @@ def users(experiment: str, split: str, n: int, config_seed: object = 0) -> list[
         There is no such split.
     """
     if split not in SPLITS:
-        raise InputError(f"split {split!r} of the users of {experiment!r}: expected one of {', '.join(SPLITS)}")
+        raise InputError(
+            f"split {split!r} of the users of {experiment!r}: expected one of {', '.join(SPLITS)}"
+        )
     found = []
     turn = int(seed(config_seed, "puppeteer", experiment, split).integers(len(STYLES)))
     for k in range(n):
