@@ -116,7 +116,8 @@ def _one(motion: Motion) -> Group:
     joints = forward(motion)[0]
     points = np.concatenate([joints, ends(motion)], axis=1)
     n = len(skeleton)
-    pairs = [(int(p), j) for j, p in enumerate(skeleton.parents) if p >= 0]
+    hidden = 0 if is_hand(skeleton) else _below(skeleton)
+    pairs = [(int(p), j) for j, p in enumerate(skeleton.parents) if p >= hidden]
     pairs += [(int(e), n + k) for k, e in enumerate(skeleton.ends)]
     bones = np.array(pairs, dtype=np.int64).reshape(-1, 2)
     lengths = np.linalg.norm(points[0, bones[:, 0]] - points[0, bones[:, 1]], axis=1)
@@ -124,8 +125,9 @@ def _one(motion: Motion) -> Group:
     hand = is_hand(skeleton)
     owner = np.concatenate([np.arange(n), skeleton.ends]).astype(np.int64)
     colours = np.array(_finger_colours() if hand else _side_colours(skeleton), dtype=np.float64)[owner]
-    thickness = 0.0062 if hand else 0.017 * _height(motion, points)
+    thickness = 0.0062 if hand else 0.019 * _height(skeleton)
     radii, bone_radii = _sizes(points.shape[1], bones, lengths, thickness)
+    points[:, :hidden] = points[:, hidden : hidden + 1]  # inside the first joint that is seen
     opaque = np.ones((points.shape[1], 1))
     rgba = np.concatenate([colours, opaque], axis=1)
     tint = 0.72 * rgba + 0.28 * np.array([1.0, 1.0, 1.0, 1.0])
@@ -143,13 +145,29 @@ def _one(motion: Motion) -> Group:
     )
 
 
-def _height(motion: Motion, points: Floats) -> float:
-    """About how tall a body is: the largest extent of its rest pose (metres)."""
-    rest = np.zeros((len(motion.skeleton), 3))
-    for j, p in enumerate(motion.skeleton.parents):
-        rest[j] = motion.skeleton.offsets[j] + (rest[p] if p >= 0 else 0.0)
-    size = float(np.ptp(rest, axis=0).max())
-    return size if size > 1e-6 else float(np.ptp(points[0], axis=0).max()) or 1.0
+def _height(skeleton: Skeleton) -> float:
+    """About how tall a body is, metres: 2.1 times a leg, or the longest way from the root to a leaf doubled."""
+    lengths = np.linalg.norm(skeleton.offsets, axis=1)
+    way = np.zeros(len(skeleton))
+    for j, p in enumerate(skeleton.parents):
+        way[j] = way[p] + lengths[j] if p >= 0 else 0.0
+    try:
+        known = find_joints(skeleton)
+    except InputError:
+        return 2.0 * float(way.max()) or 1.0
+    return 2.1 * float(way[known["l_foot"]] - way[known["l_hip"]]) or 1.0
+
+
+def _below(skeleton: Skeleton) -> int:
+    """How many first joints only carry the waist (a root on the floor, say) and are not part of the body."""
+    try:
+        waist = find_joints(skeleton)["waist"]
+    except InputError:
+        return 0
+    k = 0
+    while k < waist and k + 1 < len(skeleton) and np.count_nonzero(skeleton.parents == k) == 1:
+        k += 1
+    return k
 
 
 def _sizes(n: int, bones: NDArray[np.int64], lengths: Floats, thickness: float) -> tuple[Floats, Floats]:

@@ -7,7 +7,7 @@ halves that face the eye are drawn.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -149,7 +149,7 @@ def frames(
     width: int = 640,
     height: int = 480,
     at: Sequence[int] | None = None,
-) -> Iterator[Picture]:
+) -> Generator[Picture, None, None]:
     """Pictures of figures that move.
 
     Parameters
