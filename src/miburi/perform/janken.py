@@ -253,7 +253,7 @@ def _targets(holds: Sequence[str], rng: np.random.Generator) -> Floats:
     joints = np.stack([_wander(rng, n, 0.4) for _ in _SENSORS], axis=1)
     closed = np.array([h == "r" for h in holds])[:, None]
     # a fist ends at the palm, so it varies less than an open hand
-    size = np.where(_FLEXES, np.where(closed, 2.2, 3.6), 1.8)
+    size = np.where(_FLEXES, np.where(closed, 2.4, 5.0), 2.0)
     return poses + size * (0.5 * hand + 0.8 * fingers[:, _FINGER] + 0.8 * joints)
 
 
