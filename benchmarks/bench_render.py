@@ -1,9 +1,12 @@
-"""Rendering a hand: one draw for all spheres and one for all bones, against a scene whose nodes move one by one.
+"""Rendering a hand: one draw for all spheres and one for all bones, against a scene whose nodes move one
+by one.
 
-Prints a table of milliseconds a frame (median) and the ratio to ours, and how much the pictures differ. Peers:
+Prints a table of milliseconds a frame (median) and the ratio to ours, and how much the pictures differ.
+Peers:
 
-* `nodes, pyrender's own`: one mesh for each sphere, bone and the grid, of trimesh's shapes, pyrender's shaders, two
-  lights and its reading of depths, as its documentation has it; each frame sets every node's pose;
+* `nodes, pyrender's own`: one mesh for each sphere, bone and the grid, of trimesh's shapes, pyrender's
+  shaders, two lights and its reading of depths, as its documentation has it; each frame sets every node's
+  pose;
 * `nodes, whole shapes`: the same with our shaders and without depths;
 * `nodes, our shapes`: our half shapes as well; only the instances are left out.
 
@@ -41,6 +44,18 @@ def wearer() -> Motion:
     return hand(((counts - offsets) * gains) @ weights, janken.FPS)
 
 
+def tube(around: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices, normals and triangles of a whole cylinder from y = 0 to y = 1."""
+    phi = np.arange(around) * 2 * np.pi / around
+    ring = np.stack([np.sin(phi), 0 * phi, np.cos(phi)], axis=1)
+    a = np.arange(around)
+    b = (a + 1) % around
+    faces = np.concatenate(
+        [np.stack([a, b, b + around], axis=1), np.stack([a, b + around, a + around], axis=1)]
+    )
+    return np.concatenate([ring, ring + np.array([0, 1, 0])]), np.concatenate([ring, ring]), faces
+
+
 def one_by_one(motion: Motion, *, shapes: bool, shaders: bool) -> Iterator[np.ndarray]:
     """Pictures from a scene in which every sphere and bone is a node."""
     group = figure.group([motion])
@@ -53,10 +68,7 @@ def one_by_one(motion: Motion, *, shapes: bool, shaders: bool) -> Iterator[np.nd
     ball, rod = scene.dome(), scene.trough()
     if not shapes:
         sphere = trimesh.creation.icosphere(subdivisions=3, radius=1.0)
-        tube = trimesh.creation.cylinder(radius=1.0, height=1.0, sections=32)
-        along_y = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
-        ball = (sphere.vertices, sphere.vertices, sphere.faces)
-        rod = (tube.vertices @ along_y.T + (0, 0.5, 0), tube.vertex_normals @ along_y.T, tube.faces)
+        ball, rod = (sphere.vertices, sphere.vertices, sphere.faces), tube(32)
     if not shaders:
         for place in ((-0.5, 0.8, 0.9), (0.9, 0.1, 0.5)):
             light = pyrender.DirectionalLight(color=np.ones(3), intensity=3.0)

@@ -2,18 +2,19 @@
 
 Nobody wore a glove. Every interval has the length that the label counts of [H]'s table 2 leave it; within it,
 each sensor has its own onset, duration and skew of a minimum-jerk movement (Flash and Hogan 1985), opening
-overshoots, holds sag back, habits and sensors drift, hands tremble. The glove that reads this is a little off its
-calibration, mixes neighbouring sensors, saturates, and gives whole counts.
+overshoots, holds sag back, habits and sensors drift, hands tremble. The glove that reads this is a little
+off its calibration, mixes neighbouring sensors, saturates, and gives whole counts.
 
 The 22 columns are in the order of the glove maker's kit without the absolute abduction of the index. Its four
-sensors of the outermost finger joints are not fitted (they give one count throughout), as on an 18-sensor glove:
-the calibration lets these joints follow the middle ones.
+sensors of the outermost finger joints are not fitted (they give one count throughout), as on an 18-sensor
+glove: the calibration lets these joints follow the middle ones.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -158,8 +159,9 @@ def perform(seed: int, *, small: bool = False) -> dict[str, tuple[NDArray[np.int
     Returns
     -------
     dict of (counts, labels)
-        By take: counts (T, 22) from 0 to 255 at 30 frames/s, and intervals (start, end, label), end exclusive, that
-        cover every frame. In all 4197 frames and 245 intervals, those of [H]'s table 2 label by label (not small).
+        By take: counts (T, 22) from 0 to 255 at 30 frames/s, and intervals (start, end, label), end
+        exclusive, that cover every frame. In all 4197 frames and 245 intervals, those of [H]'s table 2
+        label by label (not small).
     """
     lengths = {label: iter(_lengths(seed, label)) for label in COUNTS}
     device = _Device.drawn(seed)
@@ -204,13 +206,14 @@ def _alternation(first: str, second: str, holds: int) -> list[str]:
     """Hold, change, hold …, as "r rs s sr r" for first "r", second "s" and 3 holds."""
     poses = [(first, second)[k % 2] for k in range(holds)]
     labels = [poses[0]]
-    for one, other in zip(poses[:-1], poses[1:], strict=True):
+    for one, other in pairwise(poses):
         labels += [one + other, other]
     return labels
 
 
 def _lengths(seed: int, label: str) -> list[int]:
-    """Lengths of a label's intervals, frames: log-normal, slowly wandering tempo, the sum of table 2 exactly."""
+    """Lengths of a label's intervals, frames: log-normal, slowly wandering tempo, the sum of table 2
+    exactly."""
     frames, intervals = COUNTS[label]
     rng = store.seed(seed, "janken", "lengths", label)
     tempo = _wander(rng, intervals, 0.75)
@@ -244,8 +247,8 @@ def _settling(frames: Floats, time: Floats | float) -> Floats:
 
 
 def _targets(holds: Sequence[str], rng: np.random.Generator) -> Floats:
-    """The pose of each hold, (K, 22) degrees: habits of the hand, its fingers and each joint wander from hold to
-    hold."""
+    """The pose of each hold, (K, 22) degrees: habits of the hand, its fingers and each joint wander from
+    hold to hold."""
     n = len(holds)
     poses = np.stack([_POSES[h] for h in holds])
     hand = _wander(rng, n, 0.6)[:, None]
@@ -268,7 +271,8 @@ def _angles(intervals: Sequence[Interval], rng: np.random.Generator) -> Floats:
     way = _minimum_jerk(phase)  # (T, K − 1, 22)
     angles = targets[0] + np.sum(way * steps, axis=1)
 
-    # After a change the hand is a little beyond the pose and settles; as the hold goes on it sags towards rest.
+    # After a change the hand is a little beyond the pose and settles; as the hold goes on it sags towards
+    # rest.
     opening = np.where(_FLEXES & (steps < -30), 1.0, 0.0)
     beyond = steps * (0.035 + 0.05 * opening) * rng.gamma(4.0, 0.25, steps.shape)
     settle = rng.uniform(4.0, 8.0, steps.shape)
@@ -279,15 +283,15 @@ def _angles(intervals: Sequence[Interval], rng: np.random.Generator) -> Floats:
     held += sag * (1 - _settling(since, 22.0)) * (since > 0)
     held[:, :-1] *= 1 - way[:, 1:]  # the next change takes the sag with it
     angles += held.sum(axis=1)
-    return angles + _tremor(len(angles), rng)
+    return np.asarray(angles + _tremor(len(angles), rng))
 
 
 def _timing(changes: Sequence[Interval], rng: np.random.Generator) -> tuple[Floats, Floats, Floats]:
     """Onset and duration (frames) and skew of each change and sensor, each (K, 22).
 
-    The labelled interval holds the whole change but for the first and last percents of its way, as one labels by
-    eye. Fingers start one after the other in an order that is the wearer's habit, with exceptions; within a finger
-    the middle joint leads a little when the hand closes.
+    The labelled interval holds the whole change but for the first and last percents of its way, as one
+    labels by eye. Fingers start one after the other in an order that is the wearer's habit, with
+    exceptions; within a finger the middle joint leads a little when the hand closes.
     """
     k = len(changes)
     start = np.array([s for s, _, _ in changes], dtype=np.float64)[:, None]
@@ -307,7 +311,8 @@ def _timing(changes: Sequence[Interval], rng: np.random.Generator) -> tuple[Floa
 
 
 def _tremor(frames: int, rng: np.random.Generator) -> Floats:
-    """Physiological tremor (6-12 Hz, about 0.1°) and slow unrest (below 1 Hz, about 0.5°): (T, 22) degrees."""
+    """Physiological tremor (6-12 Hz, about 0.1°) and slow unrest (below 1 Hz, about 0.5°): (T, 22)
+    degrees."""
     from scipy.signal import butter, sosfilt
 
     noise = rng.standard_normal((frames + 120, _FINGERS)) @ _COUPLED.T
@@ -343,16 +348,17 @@ class _Device(NamedTuple):
         noise = 0.16 * rng.standard_normal((t, n))  # below a count
         counts = self.offset + (angles @ self.crosstalk.T) / self.gain + warming + walk + noise
         counts[:, ~_FITTED] = self.offset[~_FITTED]
-        return np.clip(np.rint(counts), 0, 255).astype(np.int64)
+        return np.asarray(np.clip(np.rint(counts), 0, 255), dtype=np.int64)
 
 
 def _crosstalk(rng: np.random.Generator) -> Floats:
-    """What each sensor takes from the others, (22, 22): its finger's other sensors, and for abductions the bends of
-    the two fingers that they lie between (as real ones do when one finger is bent and its neighbour straight)."""
+    """What each sensor takes from the others, (22, 22): its finger's other sensors, and for abductions the
+    bends of the two fingers that they lie between (as real ones do when one finger is bent and its
+    neighbour straight)."""
     n = len(_SENSORS)
     mix = np.eye(n)
     for k in range(n):
-        same = (_FINGER == _FINGER[k]) & (np.arange(n) != k) & _FITTED
+        same = (_FINGER[k] == _FINGER) & (np.arange(n) != k) & _FITTED
         mix[k, same] += 0.012 * rng.standard_normal(int(same.sum()))
     for spread, (near, far) in {10: (4, 7), 14: (7, 11), 18: (11, 15)}.items():
         pull = rng.uniform(0.04, 0.08)

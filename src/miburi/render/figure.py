@@ -21,7 +21,13 @@ FIELD = float(np.radians(32.0))
 _TRUNK = (0.42, 0.42, 0.45)
 _LEFT = (0.86, 0.36, 0.13)
 _RIGHT = (0.12, 0.38, 0.68)
-_FINGERS = ((0.55, 0.16, 0.10), (0.93, 0.56, 0.16), (0.25, 0.56, 0.30), (0.15, 0.45, 0.68), (0.42, 0.28, 0.60))
+_FINGERS = (
+    (0.55, 0.16, 0.10),
+    (0.93, 0.56, 0.16),
+    (0.25, 0.56, 0.30),
+    (0.15, 0.45, 0.68),
+    (0.42, 0.28, 0.60),
+)
 _HAND_VIEW = (0.34, 0.30, 1.0)  # palm, a little from the thumb's side and from above
 _STANDS_STILL = 2.5  # metres: a body that goes further is followed by the camera
 
@@ -60,7 +66,8 @@ class Group(NamedTuple):
 
 
 class Camera(NamedTuple):
-    """Where the camera is at each frame: `rotation` (3, 3), columns right, up, back; `places` (T, 3) metres."""
+    """Where the camera is at each frame: `rotation` (3, 3), columns right, up, back; `places` (T, 3)
+    metres."""
 
     rotation: Floats
     places: Floats
@@ -72,7 +79,8 @@ def is_hand(skeleton: Skeleton) -> bool:
 
 
 def group(motions: Sequence[Motion]) -> Group:
-    """Figures side by side, from the left to the right of the picture, facing the camera as the first one does."""
+    """Figures side by side, from the left to the right of the picture, facing the camera as the first one
+    does."""
     parts = [_one(m) for m in motions]
     frames = max(len(p.points) for p in parts)
     points, bones, first, edge = [], [], 0, 0.0
@@ -87,14 +95,13 @@ def group(motions: Sequence[Motion]) -> Group:
         points.append(own)
         bones.append(part.bones + first)
         first += own.shape[1]
-    whole = np.concatenate(points, axis=1)
-    merged = [np.concatenate([getattr(p, name) for p in parts]) for name in ("radii", "bone_radii")]
-    colours = [np.concatenate([getattr(p, name) for p in parts]) for name in ("colours", "bone_colours")]
     return Group(
-        whole,
+        np.concatenate(points, axis=1),
         np.concatenate(bones),
-        *merged,
-        *colours,
+        np.concatenate([p.radii for p in parts]),
+        np.concatenate([p.bone_radii for p in parts]),
+        np.concatenate([p.colours for p in parts]),
+        np.concatenate([p.bone_colours for p in parts]),
         floor=min(p.floor for p in parts),
         cell=max(p.cell for p in parts),
         view=parts[0].view,
@@ -103,7 +110,8 @@ def group(motions: Sequence[Motion]) -> Group:
 
 
 def _turned(part: Group, view: Floats) -> Floats:
-    """Points turned about the vertical, so that a figure that is seen from `part.view` is seen from `view`."""
+    """Points turned about the vertical, so that a figure that is seen from `part.view` is seen from
+    `view`."""
     angle = np.arctan2(view[0], view[2]) - np.arctan2(part.view[0], part.view[2])
     c, s = np.cos(angle), np.sin(angle)
     turn = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
@@ -146,7 +154,8 @@ def _one(motion: Motion) -> Group:
 
 
 def _height(skeleton: Skeleton) -> float:
-    """About how tall a body is, metres: 2.1 times a leg, or the longest way from the root to a leaf doubled."""
+    """About how tall a body is, metres: 2.1 times a leg, or the longest way from the root to a leaf
+    doubled."""
     lengths = np.linalg.norm(skeleton.offsets, axis=1)
     way = np.zeros(len(skeleton))
     for j, p in enumerate(skeleton.parents):
@@ -171,7 +180,8 @@ def _below(skeleton: Skeleton) -> int:
 
 
 def _sizes(n: int, bones: NDArray[np.int64], lengths: Floats, thickness: float) -> tuple[Floats, Floats]:
-    """Radii of points and bones: the figure's thickness, less where the bones are short (fingers of a body)."""
+    """Radii of points and bones: the figure's thickness, less where the bones are short (fingers of a
+    body)."""
     longest = np.zeros(n)
     np.maximum.at(longest, bones.ravel(), np.repeat(lengths, 2))
     radii = np.clip(0.24 * longest, 0.3 * thickness, thickness)
@@ -204,7 +214,8 @@ def _side_colours(skeleton: Skeleton) -> list[tuple[float, float, float]]:
 
 
 def _front(motion: Motion, joints: Floats) -> Floats:
-    """From the figure to a camera before it, 35° to its left and 14° up; what is before it is the mean over time."""
+    """From the figure to a camera before it, 35° to its left and 14° up; what is before it is the mean
+    over time."""
     try:
         known = find_joints(motion.skeleton)
     except InputError:
@@ -241,9 +252,9 @@ def look(direction: ArrayLike) -> Floats:
 def framed(points: Floats, radii: Floats, rotation: Floats, aspect: float, margin: float = 1.06) -> Floats:
     """The nearest place (3,) of a camera from which all points (N, 3), with radii (N,), are in the picture.
 
-    A point x right of and z before the picture's centre is inside if |x − cx| ≤ (D − z) tan(field / 2); with the
-    largest of x + z tan and −x + z tan over all points this is two linear bounds on cx and the distance D; so it is
-    for the other direction.
+    A point x right of and z before the picture's centre is inside if |x − cx| ≤ (D − z) tan(field / 2);
+    with the largest of x + z tan and −x + z tan over all points this is two linear bounds on cx and the
+    distance D; so it is for the other direction.
     """
     centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
     seen = (points - centre) @ rotation
@@ -281,4 +292,3 @@ def grid(figures: Group) -> Floats:
     along_z = [((a, y, z[0]), (a, y, z[-1])) for a in x]
     along_x = [((x[0], y, a), (x[-1], y, a)) for a in z]
     return np.array(along_z + along_x, dtype=np.float64)
-

@@ -1,7 +1,8 @@
 """pyrender without a display and under NumPy 2; all rendering imports it from here.
 
-Four defects of pyrender 0.1.45 are dealt with: its import needs a viewer's X11 libraries; it uses a name that NumPy
-has dropped; it draws in the order of a set, which makes pictures differ between runs; it looks for a window first.
+Four defects of pyrender 0.1.45 are dealt with: its import needs a viewer's X11 libraries; it uses a name
+that NumPy has dropped; it draws in the order of a set, which makes pictures differ between runs; it looks
+for a window first.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ os.environ.setdefault("PYOPENGL_PLATFORM", "egl")  # read when OpenGL is importe
 import numpy as np
 
 if not hasattr(np, "infty"):
-    np.infty = np.inf  # type: ignore[attr-defined]
+    np.infty = np.inf  # type: ignore[attr-defined]  # noqa: NPY201
 
 _viewer = types.ModuleType("pyrender.viewer")
 _viewer.Viewer = None  # type: ignore[attr-defined]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import matplotlib
@@ -43,7 +44,8 @@ Whole = Sequence[int] | NDArray[np.integer[Any]]
 
 
 class Bar(NamedTuple):
-    """A measure's result: its value, the interval around it (absent: none), and the paper's figure (absent: none)."""
+    """A measure's result: its value, the interval around it (absent: none), and the paper's figure
+    (absent: none)."""
 
     name: str
     value: float
@@ -100,12 +102,14 @@ def spliced(
     ylim: tuple[float, float] | None = None,
     source: str = "recorded",
 ) -> None:
-    """The same labels cut from recordings and put end to end ([H], fig. 5), the generated curve in grey behind.
+    """The same labels cut from recordings and put end to end ([H], fig. 5), the generated curve in grey
+    behind.
 
     Parameters
     ----------
     pieces : (T,)
-        Angle of each frame of the pieces; each piece is a line of its own, so a step at a join is a gap in height.
+        Angle of each frame of the pieces; each piece is a line of its own, so a step at a join is a gap in
+        height.
     boundaries : (L + 1,)
         Where the pieces begin, and T.
     generated : (G,)
@@ -123,11 +127,15 @@ def spliced(
             other, bounds = _checked(path, generated, generated_boundaries, labels)
             time = np.interp(np.arange(len(other)), bounds, edges) / fps
             axes.plot(time, other, color=_GREY, lw=2.0, label="generated, stretched label by label")
-        for k, (start, end) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+        for k, (start, end) in enumerate(pairwise(edges)):
             piece = slice(int(start), int(end))
             marker = {"marker": "o", "ms": 2.2} if end - start == 1 else {}
             axes.plot(
-                np.arange(start, end) / fps, values[piece], color=_ACCENT, label=None if k else source, **marker
+                np.arange(start, end) / fps,
+                values[piece],
+                color=_ACCENT,
+                label=None if k else source,
+                **marker,
             )
         _labelled(axes, edges, labels, fps, ylabel)
         if ylim is not None:
@@ -169,14 +177,22 @@ def staircase(
             time, last([low, low[-1:]]), last([high, high[-1:]]), step="post", color=_PAPER, alpha=0.16, lw=0,
             label="±σ of the states",
         )  # fmt: skip
-        axes.step(time, last([steps, steps[-1:]]), where="post", color=_PAPER, lw=0.9, label="mean of the states")
+        axes.step(
+            time, last([steps, steps[-1:]]), where="post", color=_PAPER, lw=0.9, label="mean of the states"
+        )
         axes.plot(np.arange(len(values)) / fps, values, color=_INK, label="generated")
         _labelled(axes, edges, labels, fps, ylabel)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3)
 
 
 def measures(
-    path: Path, bars: Sequence[Bar], *, xlabel: str, title: str = "", chance: float | None = None, log: bool = False
+    path: Path,
+    bars: Sequence[Bar],
+    *,
+    xlabel: str,
+    title: str = "",
+    chance: float | None = None,
+    log: bool = False,
 ) -> None:
     """Measures side by side: bars with intervals, the paper's figures as diamonds, chance as a line.
 
@@ -196,7 +212,11 @@ def measures(
             if b.low is not None and b.high is not None:
                 axes.plot([b.low, b.high], [k, k], color=_INK, lw=1.0, solid_capstyle="butt")
             axes.annotate(
-                f"{b.value:.3g}", (max(b.value, b.high or b.value), k), (4, 0), textcoords="offset points", va="center"
+                f"{b.value:.3g}",
+                (max(b.value, b.high or b.value), k),
+                (4, 0),
+                textcoords="offset points",
+                va="center",
             )
         printed = [(b.paper, k) for k, b in enumerate(bars) if b.paper is not None]
         if printed:
@@ -220,9 +240,16 @@ def _checked(path: Path, x: ArrayLike, boundaries: Whole, labels: Sequence[str])
     edges = np.asarray(boundaries, dtype=np.float64)
     if values.ndim != 1 or not len(values) or not np.isfinite(values).all():
         raise InputError(f"{path}: a curve of shape {values.shape}, expected (T,) finite numbers")
-    if edges.shape != (len(labels) + 1,) or edges[0] != 0 or edges[-1] != len(values) or (np.diff(edges) <= 0).any():
+    if (
+        edges.shape != (len(labels) + 1,)
+        or edges[0] != 0
+        or edges[-1] != len(values)
+        or (np.diff(edges) <= 0).any()
+    ):
         raise InputError(
-            f"{path}: {len(labels)} labels and boundaries of shape {edges.shape}, expected {len(labels) + 1} that rise "
+            f"{path}: {len(labels)} labels and boundaries of shape {edges.shape}, expected {
+                len(labels) + 1
+            } that rise "
             f"from 0 to {len(values)}"
         )
     return values, edges
@@ -234,12 +261,17 @@ def _labelled(axes: Any, edges: Floats, labels: Sequence[str], fps: float, ylabe
         axes.axvline((edge - 0.5) / fps, color=_GREY, lw=0.6, zorder=0)
     for start, end, label in zip(edges[:-1], edges[1:], labels, strict=True):
         axes.text(
-            (0.5 * (start + end) - 0.5) / fps, 1.015, label, transform=axes.get_xaxis_transform(), ha="center",
-            va="bottom",
+            (0.5 * (start + end) - 0.5) / fps, 1.015, label, transform=axes.get_xaxis_transform(),
+            ha="center", va="bottom",
         )  # fmt: skip
     axes.set_xlim(-0.5 / fps, (edges[-1] - 0.5) / fps)
     axes.set_xlabel("time (s)")
     axes.set_ylabel(ylabel)
+
+
+def _settings() -> Any:
+    """matplotlib's own defaults and our style, whatever the user has set."""
+    return {**dict(matplotlib.rcParamsDefault), **_STYLE, "backend": "agg"}
 
 
 @contextmanager
@@ -248,7 +280,7 @@ def _axes(path: Path, title: str, height: float = 2.1) -> Iterator[Any]:
     kind = os.fspath(path).rsplit(".", 1)[-1].lower()
     if kind not in _STAMPS:
         raise InputError(f"{path}: cannot be written; plots are .png, .svg or .pdf")
-    with matplotlib.rc_context({**matplotlib.rcParamsDefault, **_STYLE, "backend": "agg"}):
+    with matplotlib.rc_context(_settings()):
         plot = Figure(figsize=(6.3, height))
         FigureCanvasAgg(plot)
         axes = plot.add_subplot()

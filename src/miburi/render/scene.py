@@ -1,7 +1,7 @@
 """One scene whose instances move: spheres at joints and ends, cylinders along bones, a grid in the ZX plane.
 
-All spheres are one draw and all bones another; between two frames only the instances' poses go to the GPU. Only the
-halves that face the eye are drawn.
+All spheres are one draw and all bones another; between two frames only the instances' poses go to the GPU.
+Only the halves that face the eye are drawn.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ _COLOUR_LOCATION = 2  # of the attributes position, normal, colour
 class Instances(pyrender.Primitive):  # type: ignore[misc]
     """A shape drawn many times in one call, each time with its own pose and colour.
 
-    pyrender draws instances, but uploads their poses once and gives all of them one colour. Here `move` has the
-    poses uploaded before the next draw, and colours are an attribute of the instance.
+    pyrender draws instances, but uploads their poses once and gives all of them one colour. Here `move`
+    has the poses uploaded before the next draw, and colours are an attribute of the instance.
 
     Parameters
     ----------
@@ -43,7 +43,9 @@ class Instances(pyrender.Primitive):  # type: ignore[misc]
         From 0 to 1, red, green, blue, opacity.
     """
 
-    def __init__(self, positions: Floats, normals: Floats, indices: NDArray[np.int64], colours: Floats) -> None:
+    def __init__(
+        self, positions: Floats, normals: Floats, indices: NDArray[np.int64], colours: Floats
+    ) -> None:
         super().__init__(
             positions,
             normals=normals,
@@ -84,8 +86,9 @@ class Instances(pyrender.Primitive):  # type: ignore[misc]
 def dome(rim: int = 20) -> tuple[Floats, Floats, NDArray[np.int64]]:
     """Vertices, normals and triangles of the half of a unit sphere that faces +z.
 
-    What is turned to the eye is all that is seen of a sphere. A software rasteriser takes its time by the triangle, so
-    there are many where the outline is (`rim`, an even number) and few inside, where normals make it round.
+    What is turned to the eye is all that is seen of a sphere. A software rasteriser takes its time by the
+    triangle, so there are many where the outline is (`rim`, an even number) and few inside, where normals
+    make it round.
     """
     n = rim // 2
     angles = (np.arange(rim) * 2 * np.pi / rim, np.arange(n) * 2 * np.pi / n)
@@ -107,13 +110,14 @@ def dome(rim: int = 20) -> tuple[Floats, Floats, NDArray[np.int64]]:
 
 
 def trough(strips: int = 6) -> tuple[Floats, Floats, NDArray[np.int64]]:
-    """Vertices, normals and triangles of the half of a cylinder that faces +z: radius 1, from y = 0 to y = 1."""
+    """Vertices, normals and triangles of the half of a cylinder that faces +z: radius 1, from y = 0 to y =
+    1."""
     phi = np.linspace(-np.pi / 2, np.pi / 2, strips + 1)
     arc = np.stack([np.sin(phi), np.zeros_like(phi), np.cos(phi)], axis=-1)
     a = np.arange(strips)
     b = a + strips + 1
     faces = np.concatenate([np.stack([a, a + 1, b + 1], axis=1), np.stack([a, b + 1, b], axis=1)])
-    return np.concatenate([arc, arc + (0.0, 1.0, 0.0)]), np.concatenate([arc, arc]), faces
+    return np.concatenate([arc, arc + np.array([0.0, 1.0, 0.0])]), np.concatenate([arc, arc]), faces
 
 
 def dome_poses(points: Floats, radii: Floats, eye: Floats) -> Floats:
@@ -124,7 +128,8 @@ def dome_poses(points: Floats, radii: Floats, eye: Floats) -> Floats:
 
 
 def trough_poses(tails: Floats, heads: Floats, radii: Floats, eye: Floats) -> Floats:
-    """Poses (N, 4, 4) of half cylinders from tails to heads, each (N, 3), with radii (N,), turned to the eye (3,)."""
+    """Poses (N, 4, 4) of half cylinders from tails to heads, each (N, 3), with radii (N,), turned to the
+    eye (3,)."""
     along = heads - tails
     y = unit(along)
     x = np.cross(y, eye - tails)
@@ -193,7 +198,8 @@ def frames(
 
 
 def offscreen(width: int, height: int) -> Any:
-    """pyrender's renderer with shaders and a way to read pictures of our own (its own take most of a frame's time)."""
+    """pyrender's renderer with shaders and a way to read pictures of our own (its own take most of a
+    frame's time)."""
     renderer = pyrender.OffscreenRenderer(width, height)
     inner = renderer._renderer
     inner._program_cache = ShaderProgramCache(str(Path(__file__).parent / "shaders"))
@@ -212,7 +218,11 @@ def build(group: figure.Group, aspect: float, camera: figure.Camera) -> tuple[An
     scene = pyrender.Scene(bg_color=BACKGROUND)
     spheres = Instances(*dome(), group.colours)
     bones = Instances(*trough(), group.bone_colours)
-    for name, primitive in (("1 spheres", spheres), ("2 bones", bones), ("3 grid", _grid(figure.grid(group)))):
+    for name, primitive in (
+        ("1 spheres", spheres),
+        ("2 bones", bones),
+        ("3 grid", _grid(figure.grid(group))),
+    ):
         scene.add(pyrender.Mesh([primitive]), name=name)
     far = float(np.linalg.norm(camera.places[0] - group.points[0].mean(axis=0)))
     eye = pyrender.PerspectiveCamera(yfov=figure.FIELD, aspectRatio=aspect, znear=0.05 * far, zfar=20.0 * far)

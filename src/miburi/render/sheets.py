@@ -29,7 +29,8 @@ def evenly(first: int, last: int, count: int) -> list[int]:
 
 
 def rows(motion: Motion, *, columns: int = 8, count: int | None = None) -> list[Strip]:
-    """Strips that show a whole motion: `count` frames (absent: two a second, 4 to 48) in rows of `columns`."""
+    """Strips that show a whole motion: `count` frames (absent: two a second, 4 to 48) in rows of
+    `columns`."""
     if columns < 1:
         raise InputError(f"a contact sheet of {columns} columns, expected 1 or more")
     wanted = min(max(4, round(2 * len(motion) / motion.fps)), 48) if count is None else count
@@ -38,10 +39,13 @@ def rows(motion: Motion, *, columns: int = 8, count: int | None = None) -> list[
 
 
 def changes(
-    labels: Sequence[str], boundaries: Sequence[int] | NDArray[np.int64], wanted: Sequence[str], columns: int = 8
+    labels: Sequence[str],
+    boundaries: Sequence[int] | NDArray[np.int64],
+    wanted: Sequence[str],
+    columns: int = 8,
 ) -> list[Strip]:
-    """A strip for the first time that each wanted label appears, from the hold before it to the hold after it ([H],
-    fig. 6).
+    """A strip for the first time that each wanted label appears, from the hold before it to the hold after
+    it ([H], fig. 6).
 
     Parameters
     ----------

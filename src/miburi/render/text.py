@@ -22,7 +22,8 @@ def _font(size: int) -> FreeTypeFont:
 
 
 def write(picture: Picture, words: str, at: tuple[float, float], anchor: str, size: int) -> Picture:
-    """The picture with words at (x, y) pixels; `anchor` as in Pillow, "lt" is the words' upper left corner."""
+    """The picture with words at (x, y) pixels; `anchor` as in Pillow, "lt" is the words' upper left
+    corner."""
     image = Image.fromarray(picture)
     ImageDraw.Draw(image).text(at, words, fill=_INK, font=_font(size), anchor=anchor)
     return np.asarray(image)
