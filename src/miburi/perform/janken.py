@@ -80,7 +80,7 @@ def _spread(joints: Sequence[str], weights: Sequence[float]) -> dict[str, Any]:
 
 _UNFITTED: Mapping[str, Any] = {}
 _SENSORS = (
-    Sensor("thumb roll", -0.6, 60, {"joint": "thumb1", "axis": "y"}, -84, -14, -96),
+    Sensor("thumb roll", -0.6, 60, {"joint": "thumb1", "axis": "y"}, -84, -22, -96),
     Sensor("thumb MCP", 0.41, 70, _bend("thumb2"), 20, 4, 48),
     Sensor("thumb IP", 0.47, 58, _bend("thumb3"), 52, -6, 56),
     Sensor("thumb-index", 0.34, 150, {"joint": "thumb1", "axis": "z"}, -8, -12, -30),
@@ -121,6 +121,7 @@ _POSES: Mapping[str, Floats] = {
 # Which finger a sensor rides on: 0 thumb … 4 little, 5 palm and wrist.
 _FINGER = np.array([0] * 4 + [1] * 3 + [2] * 4 + [3] * 4 + [4] * 4 + [5] * 3)
 _FINGERS = 6
+_MIDDLE = np.array(["PIP" in s.name for s in _SENSORS])
 _FLEXES = np.array(["MCP" in s.name or "PIP" in s.name for s in _SENSORS])
 # Ring and little finger share tendons: what one does the other half does. Rows: finger; columns: its sources.
 _COUPLED = np.eye(_FINGERS)
@@ -256,7 +257,7 @@ def _targets(holds: Sequence[str], rng: np.random.Generator) -> Floats:
     joints = np.stack([_wander(rng, n, 0.4) for _ in _SENSORS], axis=1)
     closed = np.array([h == "r" for h in holds])[:, None]
     # a fist ends at the palm, so it varies less than an open hand
-    size = np.where(_FLEXES, np.where(closed, 2.4, 5.0), 2.0)
+    size = np.where(_FLEXES, np.where(closed, 2.4, np.where(_MIDDLE, 3.6, 5.0)), 2.0)
     return poses + size * (0.5 * hand + 0.8 * fingers[:, _FINGER] + 0.8 * joints)
 
 
@@ -274,7 +275,7 @@ def _angles(intervals: Sequence[Interval], rng: np.random.Generator) -> Floats:
     # After a change the hand is a little beyond the pose and settles; as the hold goes on it sags towards
     # rest.
     opening = np.where(_FLEXES & (steps < -30), 1.0, 0.0)
-    beyond = steps * (0.035 + 0.05 * opening) * rng.gamma(4.0, 0.25, steps.shape)
+    beyond = steps * (0.03 + 0.04 * opening) * rng.gamma(4.0, 0.25, steps.shape)
     settle = rng.uniform(4.0, 8.0, steps.shape)
     rest = 0.7 * _POSES["p"] + 0.3 * _POSES["r"]
     sag = 0.07 * (rest - targets[1:]) * rng.gamma(3.0, 1 / 3, steps.shape)
@@ -299,12 +300,11 @@ def _timing(changes: Sequence[Interval], rng: np.random.Generator) -> tuple[Floa
     closing = np.array([n[1] == "r" for _, _, n in changes])[:, None]
     habit = np.array([0.05, 0.10, 0.04, -0.04, -0.07, 0.0])
     order = np.where(closing, -habit, habit) + 0.045 * rng.standard_normal((k, _FINGERS)) @ _COUPLED.T
-    middle = np.array(["PIP" in s.name for s in _SENSORS])
-    lead = np.where(closing & middle, -0.03, np.where(middle, 0.03, 0.0))
+    lead = np.where(closing & _MIDDLE, -0.03, np.where(_MIDDLE, 0.03, 0.0))
     late = order[:, _FINGER] + lead + 0.02 * rng.standard_normal((k, len(_SENSORS)))
-    onset = np.clip(0.13 + late, -0.05, 0.34)
-    share = rng.normal(0.68, 0.05, (k, 1)) + 0.05 * rng.standard_normal((k, _FINGERS))[:, _FINGER]
-    share = np.minimum(np.clip(share, 0.5, 0.85), 1.04 - onset)
+    onset = np.clip(0.11 + late, -0.05, 0.32)
+    share = rng.normal(0.73, 0.05, (k, 1)) + 0.05 * rng.standard_normal((k, _FINGERS))[:, _FINGER]
+    share = np.minimum(np.clip(share, 0.58, 0.9), 1.04 - onset)
     skew = np.exp(rng.normal(0.0, 0.1, (k, 1)) + rng.normal(0.0, 0.06, (k, len(_SENSORS))))
     eye = rng.normal(0.0, 0.5, (k, 1))  # a labeller's half frame
     return start + eye + onset * span, share * span, skew
