@@ -247,10 +247,8 @@ def _checked(path: Path, x: ArrayLike, boundaries: Whole, labels: Sequence[str])
         or (np.diff(edges) <= 0).any()
     ):
         raise InputError(
-            f"{path}: {len(labels)} labels and boundaries of shape {edges.shape}, expected {
-                len(labels) + 1
-            } that rise "
-            f"from 0 to {len(values)}"
+            f"{path}: {len(labels)} labels and boundaries of shape {edges.shape}, "
+            f"expected {len(labels) + 1} that rise from 0 to {len(values)}"
         )
     return values, edges
 

@@ -23,7 +23,7 @@ from miburi.render.gl import GL, ShaderProgramCache, pyrender
 Picture = NDArray[np.uint8]
 
 BACKGROUND = (1.0, 1.0, 1.0, 1.0)
-_GRID_COLOUR = (0.62, 0.65, 0.68, 1.0)
+_GRID_COLOUR = (0.54, 0.57, 0.60, 1.0)
 _COLOUR_LOCATION = 2  # of the attributes position, normal, colour
 
 
