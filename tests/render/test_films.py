@@ -103,7 +103,7 @@ def test_rows_cover_a_motion():
 
 
 def test_strips_of_changes():
-    labels, boundaries = "r rs s sp p".split(), [0, 9, 21, 30, 42, 60]
+    labels, boundaries = ["r", "rs", "s", "sp", "p"], [0, 9, 21, 30, 42, 60]
     one, two = sheets.changes(labels, boundaries, ["rs", "sp"], columns=5)
     assert one.title == "(1) rs" and two.title == "(2) sp"
     assert one.frames[0] == 6 and one.frames[-1] == 23 and len(one.frames) == 5

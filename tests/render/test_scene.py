@@ -32,7 +32,7 @@ def fist(frames: int = 6) -> Motion:
 
 
 def person(frames: int = 4, yaw: float = 0.0, step: float = 0.0) -> Motion:
-    """A person who faces +z, turned by yaw degrees, with the left arm out, and who goes `step` metres a frame."""
+    """A person who faces +z, turned by yaw degrees, left arm out, who goes `step` metres a frame."""
     turns = np.zeros((frames, 14, 3))
     turns[:, 0, 2] = yaw
     turns[:, PERSON.index("l_shoulder"), 0] = 80
@@ -103,6 +103,11 @@ def test_figures_stand_side_by_side():
     across = shown.points @ figure.look(shown.view)[:, 0]
     assert across[:, :15].max() < across[:, 15:30].min() < across[:, 30:].min()
     np.testing.assert_array_equal(shown.points[2:, 0:15], shown.points[2:3, :15].repeat(3, axis=0))
+    # all stand on one ground
+    high = person(3)
+    raised = Motion(PERSON, 30, high.root + (0, 1.0, 0), high.rotations)
+    level = figure.group([high, raised]).points[..., 1]
+    np.testing.assert_allclose(level[:, 15:], level[:, :15], atol=1e-9)
     # the second one is turned to the camera as the first one is
     first, second = (shown.points[0, k : k + 15] - shown.points[0, k] for k in (0, 15))
     np.testing.assert_allclose(second, first, atol=1e-9)

@@ -91,6 +91,7 @@ def group(motions: Sequence[Motion]) -> Group:
         if len(parts) > 1:
             across = own @ right
             own = own + (edge - across.min()) * right
+            own[:, :, 1] += parts[0].floor - part.floor  # on one ground
             edge += float(np.ptp(across)) + 2.0 * part.cell
         points.append(own)
         bones.append(part.bones + first)
@@ -102,7 +103,7 @@ def group(motions: Sequence[Motion]) -> Group:
         np.concatenate([p.bone_radii for p in parts]),
         np.concatenate([p.colours for p in parts]),
         np.concatenate([p.bone_colours for p in parts]),
-        floor=min(p.floor for p in parts),
+        floor=parts[0].floor,
         cell=max(p.cell for p in parts),
         view=parts[0].view,
         follow=parts[0].follow if len(parts) == 1 else np.zeros((frames, 3)),
