@@ -80,10 +80,10 @@ class Segmentation(Model):
     """PPCA segmentation (Barbič et al. 2004)."""
 
     variance: float = Field(0.95, gt=0, lt=1, description="Share of the variance that the subspace keeps (τ).")
-    window_s: float = Field(2.0, gt=0, description="Length of the first window, seconds.")
+    window_s: float = Field(1.5, gt=0, description="Length of the first window, seconds.")
     ahead_s: float = Field(1.25, gt=0, description="Length of the look-ahead, seconds.")
-    step_s: float = Field(0.0833, gt=0, description="Step of the window, seconds.")
-    rise: float = Field(0.15, gt=0, description="Rise from valley to peak that makes a cut (R), as a share of the curve's range.")
+    step_s: float = Field(1 / 12, gt=0, description="Step of the window, seconds.")
+    rise: float = Field(5.0, gt=1, description="A peak that is so many times its valley makes a cut (R).")
     shortest_s: float = Field(0.5, ge=0, description="Shorter pieces are joined to a neighbour, seconds.")
 
 
@@ -94,11 +94,12 @@ class Features(Model):
     mapped: bool = Field(True, description="Map all people onto one skeleton, as [P] does.")
 
 
-class IndexSettings(Model):
+class Index(Model):
     """The index of segments."""
 
     dims: int = Field(5, ge=1, le=42, description="Dimensions of each segment's subspace.")
     samples: int | None = Field(50, ge=1, description="Frames drawn from each side (K); null: all.")
+    reduction: Literal["max", "mean"] = Field("max", description="How SM reduces over the query's frames.")
 
 
 class Train(Model):
@@ -170,7 +171,7 @@ class Config(Model):
     corpora: dict[Name, Corpus] = Field(min_length=1, description="The sets of recordings.")
     segment: Segmentation = Field(default_factory=Segmentation, description="Segmentation.")
     features: Features = Field(default_factory=Features, description="Features of bodies.")
-    index: IndexSettings = Field(default_factory=IndexSettings, description="Index.")
+    index: Index = Field(default_factory=Index, description="Index.")
     train: Train = Field(default_factory=Train, description="Training.")
     strings: dict[Name, String] = Field({}, description="Strings of labels to synthesise.")
     films: dict[Name, Film] = Field({}, description="Films of body takes that `all` makes.")
