@@ -28,7 +28,9 @@ def _same(a: Skeleton, b: Skeleton) -> bool:
     )
 
 
-def write_motions(path: Path, motions: Mapping[str, Motion], recordings: Mapping[str, str], made_from: Mapping[str, str]) -> None:
+def write_motions(
+    path: Path, motions: Mapping[str, Motion], recordings: Mapping[str, str], made_from: Mapping[str, str]
+) -> None:
     """Write takes (name → motion) with the recording that each was read from."""
     with store.create(path, "motion", made_from) as file:
         skeletons, takes = file.create_group("skeletons"), file.create_group("takes")
@@ -95,16 +97,32 @@ def read_motions(path: Path, takes: Sequence[str] | None = None) -> dict[str, Mo
     return motions
 
 
-def write_segments(path: Path, cuts: Mapping[str, NDArray[np.int64]], method: str, parameters: Mapping[str, Any], made_from: Mapping[str, str]) -> None:
-    """Write the pieces of takes: (S, 2) start (inclusive) and end (exclusive) frames of each."""
+def read_lengths(path: Path) -> dict[str, tuple[int, float]]:
+    """Frames and frames per second of each take of a motion artefact, without reading its motions."""
+    with store.open_checked(path, "motion") as file:
+        takes = file["takes"]
+        return {
+            take: (int(takes[take]["root"].shape[0]), float(takes[take].attrs["fps"]))
+            for take in sorted(takes)
+        }
+
+
+def write_segments(
+    path: Path,
+    pieces: Mapping[str, NDArray[np.int64]],
+    methods: Mapping[str, str],
+    parameters: Mapping[str, Any],
+    made_from: Mapping[str, str],
+) -> None:
+    """Write the pieces of takes, (S, 2) start (inclusive) and end (exclusive) frames, and how each was cut."""
     with store.create(path, "segments", made_from) as file:
         takes = file.create_group("takes")
-        for take in sorted(cuts):
-            pieces = np.asarray(cuts[take], dtype=np.int64).reshape(-1, 2)
+        for take in sorted(pieces):
+            spans = np.asarray(pieces[take], dtype=np.int64).reshape(-1, 2)
             group = takes.create_group(take)
-            store.put(group, "starts", pieces[:, 0])
-            store.put(group, "ends", pieces[:, 1])
-            group.attrs["method"] = method
+            store.put(group, "starts", spans[:, 0])
+            store.put(group, "ends", spans[:, 1])
+            group.attrs["method"] = methods[take]
             group.attrs["parameters"] = json.dumps(dict(parameters), sort_keys=True)
 
 
@@ -115,12 +133,20 @@ def read_segments(path: Path) -> list[Segment]:
             (take, int(start), int(end))
             for take in sorted(file["takes"])
             for start, end in zip(
-                store.get(file["takes"][take], "starts", (None,)), store.get(file["takes"][take], "ends", (None,)), strict=True
+                store.get(file["takes"][take], "starts", (None,)),
+                store.get(file["takes"][take], "ends", (None,)),
+                strict=True,
             )
         ]
 
 
-def write_features(path: Path, features: Mapping[str, NDArray[np.float32]], segments: Sequence[Segment], fps: Mapping[str, float], made_from: Mapping[str, str]) -> None:
+def write_features(
+    path: Path,
+    features: Mapping[str, NDArray[np.float32]],
+    segments: Sequence[Segment],
+    fps: Mapping[str, float],
+    made_from: Mapping[str, str],
+) -> None:
     """Write the 42 values of every frame of takes, and their segments."""
     with store.create(path, "features", made_from) as file:
         takes = file.create_group("takes")

@@ -1,4 +1,4 @@
-"""Corpora: which takes there are, which shard each belongs to, how each is read and what happens in it.
+"""Corpora: which takes there are and which shard each belongs to.
 
 Everything here is known before any job runs: from the plan of a simulation, the table of the CMU database or the
 files in a folder.
@@ -10,16 +10,12 @@ import csv
 import glob
 import hashlib
 import os
-import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Iterable, Sequence
 
 from miburi import config as settings
 from miburi.errors import InputError
 from miburi.formats import text
-from miburi.formats.annotations import Annotation, read_annotations
-from miburi.motion import Motion
+from miburi.recordings import Take, matched
 
 CMU_TAKES = "config/cmu/takes.tsv"
 CMU_ANNOTATIONS = "config/cmu/annotations.tsv"
@@ -27,31 +23,6 @@ CMU_ANNOTATIONS = "config/cmu/annotations.tsv"
 # Bytes of one second of motion, roughly; only the sizes of jobs depend on it.
 _BYTES = {".amc": 96e3, ".bvh": 60e3, ".csv": 3e3}
 _COMPRESSED = 0.3
-
-
-@dataclass(frozen=True)
-class Take:
-    """A recording before it is read.
-
-    Parameters
-    ----------
-    name
-        Of the take.
-    subject
-        Who performs; one name for all where the corpus does not tell.
-    recording
-        Path of the file.
-    group
-        Place of its group in `groups`.
-    seconds
-        About how long it is.
-    """
-
-    name: str
-    subject: str
-    recording: str
-    group: int
-    seconds: float
 
 
 def groups(name: str, corpus: settings.Corpus) -> list[settings.Group]:
@@ -94,7 +65,9 @@ def takes(name: str, config: settings.Config) -> list[Take]:
         ]
     else:
         found = [
-            take for i, group in enumerate(corpus.groups) for take in _files(f"corpora.{name}.groups.{i}", i, group, config)
+            take
+            for i, group in enumerate(corpus.groups)
+            for take in _files(f"corpora.{name}.groups.{i}", i, group, config)
         ]
     return sorted(_once(name, found, corpus.once), key=lambda t: t.name)
 
@@ -108,7 +81,10 @@ def _performed(name: str, corpus: settings.Corpus, seed: int) -> list[Take]:
         return [Take(p.take, "wearer", f"{folder}/{p.take}.csv", 0, p.seconds) for p in plan]
     from miburi.perform import bodies
 
-    return [Take(p.take, p.performer, f"{folder}/{p.take}.bvh", 0, p.seconds) for p in bodies.plan(seed, small=corpus.small)]
+    return [
+        Take(p.take, p.performer, f"{folder}/{p.take}.bvh", 0, p.seconds)
+        for p in bodies.plan(seed, small=corpus.small)
+    ]
 
 
 def _cmu(subjects: Sequence[str]) -> list[dict[str, str]]:
@@ -118,24 +94,30 @@ def _cmu(subjects: Sequence[str]) -> list[dict[str, str]]:
     known = {row["subject"] for row in rows}
     for subject in subjects:
         if subject not in known:
-            raise InputError(f"config: fetch: {CMU_TAKES} has no subject {subject!r}; it has {', '.join(sorted(known))}")
+            raise InputError(
+                f"config: fetch: {CMU_TAKES} has no subject {subject!r}; it has {', '.join(sorted(known))}"
+            )
     return [row for row in rows if row["subject"] in subjects]
 
 
 def _files(where: str, number: int, group: settings.Group, config: settings.Config) -> list[Take]:
     """Takes of a group, by its patterns."""
-    folder = filled(group.folder, config)
+    folder = group.folder.replace("{recordings}", config.recordings)
     if not os.path.isdir(folder):
-        raise InputError(f"config: {where}.folder: there is no folder {folder!r}{_hint(group.folder, config)}")
+        raise InputError(
+            f"config: {where}.folder: there is no folder {folder!r}{_hint(group.folder, config)}"
+        )
     excluded = {p for pattern in group.exclude for p in glob.glob(pattern, root_dir=folder, recursive=True)}
     found = []
     for pattern in group.files:
         paths = sorted(set(glob.glob(pattern, root_dir=folder, recursive=True)) - excluded)
         if not paths:
-            raise InputError(f"config: {where}.files: no file in {folder!r} matches {pattern!r}{_hint(group.folder, config)}")
+            raise InputError(
+                f"config: {where}.files: no file in {folder!r} matches {pattern!r}{_hint(group.folder, config)}"
+            )
         for path in paths:
-            name = _matched(group.take, "take", path, where) or text.stem(path.replace("/", "-"))
-            subject = _matched(group.subject, "subject", path, where) or "all"
+            name = matched(group.take, "take", path, where) or text.stem(path.replace("/", "-"))
+            subject = matched(group.subject, "subject", path, where) or "all"
             full = os.path.join(folder, path)
             found.append(Take(name, subject, full, number, _seconds(full)))
     return found
@@ -148,22 +130,6 @@ def _hint(template: str, config: settings.Config) -> str:
         f"; real recordings are looked for in {config.recordings!r} (config key `recordings`), "
         "data/README.md says where to get them"
     )
-
-
-def filled(template: str, config: settings.Config, **names: str) -> str:
-    """A path of the config with `{recordings}` and other names filled in."""
-    for key, value in {"recordings": config.recordings, **names}.items():
-        template = template.replace("{" + key + "}", value)
-    return template
-
-
-def _matched(expression: str, group: str, path: str, where: str) -> str:
-    if not expression:
-        return ""
-    found = re.search(expression, path)
-    if found is None:
-        raise InputError(f"config: {where}.{group}: {expression!r} does not match {path!r}")
-    return found.group(group)
 
 
 def _seconds(path: str) -> float:
@@ -218,98 +184,3 @@ def shards(found: Sequence[Take], seconds: float) -> dict[str, list[Take]]:
 def _bit(name: str, depth: int) -> str:
     digest = int.from_bytes(hashlib.sha256(name.encode()).digest(), "big")
     return str(digest >> (255 - depth) & 1)
-
-
-def read_take(take: Take, group: settings.Group, recordings: str) -> Motion:
-    """Read a take as its group says; errors as `formats.read`."""
-    from miburi import formats
-
-    names = {"recordings": recordings, "subject": group.stand_ins.get(take.subject, take.subject)}
-    paths = {}
-    for key in ("skeleton", "calibration", "columns"):
-        path = getattr(group, key)
-        for name, value in names.items():
-            path = path.replace("{" + name + "}", value)
-        paths[key] = path
-    rate = group.rates.get(take.name, group.fps)
-    return formats.read(take.recording, corpus=group.model_copy(update={**paths, "fps": rate}))
-
-
-def companions(take: Take, group: settings.Group, config: settings.Config) -> list[str]:
-    """Files beside the recording that reading it needs and that the config names: skeleton, calibration, columns."""
-    subject = group.stand_ins.get(take.subject, take.subject)
-    return [filled(p, config, subject=subject) for p in (group.skeleton, group.calibration, group.columns) if p]
-
-
-def label_file(take: Take, group: settings.Group, recordings: str) -> str:
-    """Path of a hand take's labels."""
-    if group.labels:
-        return group.labels.replace("{recordings}", recordings).replace("{take}", take.name)
-    recording = Path(take.recording)
-    return str(recording.with_name(text.stem(recording) + ".lab"))
-
-
-def annotate_hand(
-    found: Sequence[Take], parts: Sequence[settings.Group], lengths: Mapping[str, tuple[int, float]], recordings: str
-) -> list[Annotation]:
-    """Labels of takes as annotations, with the columns `start_frame` and `end_frame` (exclusive).
-
-    Parameters
-    ----------
-    lengths
-        Take → frames and frames per second; takes that are not there are left out.
-
-    Raises
-    ------
-    InputError
-        A label file is missing or damaged.
-    """
-    from miburi.formats.labels import read_labels
-
-    rows = []
-    for take in found:
-        if take.name not in lengths:
-            continue
-        frames, fps = lengths[take.name]
-        group = parts[take.group]
-        path = label_file(take, group, recordings)
-        if not os.path.exists(path):
-            raise InputError(f"{path}: there is no such file; it should hold the labels of the take {take.name!r}")
-        for start, end, label in read_labels(path, fps=fps, unit=group.label_unit, frames=frames):
-            rows.append(_annotation(take, start, end, fps, label))
-    return rows
-
-
-def annotate_bodies(
-    found: Sequence[Take], parts: Sequence[settings.Group], lengths: Mapping[str, tuple[int, float]], recordings: str
-) -> list[Annotation]:
-    """Keywords of takes: of the whole take from its path, or of intervals from annotation files."""
-    rows = []
-    for number, group in enumerate(parts):
-        mine = {t.name: t for t in found if t.group == number and t.name in lengths}
-        folder = group.folder.replace("{recordings}", recordings)
-        for take in mine.values():
-            frames, fps = lengths[take.name]
-            if group.keyword:
-                path = os.path.relpath(take.recording, folder)
-                rows.append(_annotation(take, 0, frames, fps, _matched(group.keyword, "keyword", path, "groups")))
-        if group.annotations:
-            path = group.annotations.replace("{recordings}", recordings)
-            for line, row in enumerate(read_annotations(path), 2):
-                if row.take not in mine:
-                    continue
-                frames, fps = lengths[row.take]
-                start, end = round(row.start_s * fps), min(round(row.end_s * fps), frames)
-                # one frame too long is rounding, more is another recording
-                if start >= end or row.end_s * fps > frames + max(1.5, 0.1 * fps):
-                    raise InputError(
-                        f"{path}, line {line}: {row.keyword!r} from {row.start_s:g} to {row.end_s:g} s lies outside the "
-                        f"take {row.take!r} of {frames / fps:g} s"
-                    )
-                rows.append(_annotation(mine[row.take], start, end, fps, row.keyword))
-    return sorted(rows, key=lambda r: (r.take, r.start_s, r.end_s, r.keyword))
-
-
-def _annotation(take: Take, start: int, end: int, fps: float, keyword: str) -> Annotation:
-    more = {"start_frame": str(start), "end_frame": str(end), "subject": take.subject}
-    return Annotation(take.name, start / fps, end / fps, keyword, more)

@@ -1,0 +1,237 @@
+"""What the workflow knows before any job: the checked config, takes, shards, and which files there will be."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from miburi import corpora, job, recordings
+from miburi.config import Config, Corpus, check
+from miburi.errors import InputError
+
+_READ = (
+    "skeleton",
+    "stand_ins",
+    "fps",
+    "rates",
+    "unit",
+    "up",
+    "joints",
+    "calibration",
+    "columns",
+)
+_ANNOTATED = ("folder", "keyword", "annotations", "labels", "label_unit", "stand_ins")
+
+PRINTED = ("table1", "table2", "table3", "table4", "table5")
+CHANGES = ("rs", "sp", "pr")
+"""The changes of [H], fig. 6."""
+
+
+def _with_recordings(value: Any, folder: str) -> Any:
+    return value.replace("{recordings}", folder) if isinstance(value, str) else value
+
+
+@dataclass(frozen=True)
+class Flow:
+    """Takes, shards and files of a config; made by `plan`."""
+
+    config: Config
+
+    def names(self, kind: str) -> list[str]:
+        """Names of the corpora of hands or bodies."""
+        return [name for name, corpus in self.config.corpora.items() if corpus.kind == kind]
+
+    def corpus(self, name: str) -> Corpus:
+        """Settings of a corpus."""
+        return self.config.corpora[name]
+
+    @cached_property
+    def takes(self) -> dict[str, list[recordings.Take]]:
+        """Takes of each corpus."""
+        return {name: corpora.takes(name, self.config) for name in self.config.corpora}
+
+    @cached_property
+    def shards(self) -> dict[str, dict[str, list[recordings.Take]]]:
+        """Takes of each shard of each corpus."""
+        return {name: corpora.shards(found, self.config.shard_seconds) for name, found in self.takes.items()}
+
+    @cached_property
+    def _groups(self) -> dict[str, list[dict[str, Any]]]:
+        folder = self.config.recordings
+        return {
+            name: [
+                {key: _with_recordings(value, folder) for key, value in group.model_dump().items()}
+                for group in corpora.groups(name, corpus)
+            ]
+            for name, corpus in self.config.corpora.items()
+        }
+
+    def of_shards(self, corpus: str, stage: str) -> list[str]:
+        """Artefacts of a stage for all shards of a corpus."""
+        return [f"results/{corpus}/{stage}/{shard}.h5" for shard in self.shards[corpus]]
+
+    def shard_of(self, corpus: str, take: str) -> str:
+        """The shard that holds a take.
+
+        Raises
+        ------
+        InputError
+            The corpus has no such take.
+        """
+        for shard, found in self.shards[corpus].items():
+            if any(t.name == take for t in found):
+                return shard
+        raise InputError(f"there is no take {take!r} in corpus {corpus!r}")
+
+    def files(self, corpus: str, shard: str) -> list[str]:
+        """Files that a shard is read from."""
+        groups = self._groups[corpus]
+        found: dict[str, None] = {}
+        for take in self.shards[corpus][shard]:
+            group = groups[take.group]
+            found[take.recording] = None
+            for key in recordings.COMPANIONS:
+                if group[key]:
+                    found[recordings.filled(group[key], take, group)] = None
+        return list(found)
+
+    def to_read(self, corpus: str, shard: str) -> dict[str, Any]:
+        """What reading a shard needs: takes and the settings of their groups."""
+        found = self.shards[corpus][shard]
+        return {
+            "takes": [[t.name, t.subject, t.recording, t.group] for t in found],
+            "groups": {t.group: self._settings(corpus, t.group, _READ) for t in found},
+        }
+
+    def to_annotate(self, corpus: str) -> dict[str, Any]:
+        """What annotating a corpus needs: takes and the settings of their groups."""
+        found = self.takes[corpus]
+        return {
+            "takes": [[t.name, t.subject, t.recording, t.group] for t in found],
+            "groups": {t.group: self._settings(corpus, t.group, _ANNOTATED) for t in found},
+            "kind": self.corpus(corpus).kind,
+        }
+
+    def _settings(self, corpus: str, group: int, keys: Sequence[str]) -> dict[str, Any]:
+        return {key: self._groups[corpus][group][key] for key in keys}
+
+    def annotation_files(self, corpus: str) -> list[str]:
+        """Files that say what happens in a corpus: labels of hands, annotations of bodies."""
+        groups = self._groups[corpus]
+        if self.corpus(corpus).kind == "hand":
+            return [recordings.label_file(t, groups[t.group]) for t in self.takes[corpus]]
+        return sorted({g["annotations"] for g in groups if g["annotations"]})
+
+    def per_take(self, corpus: str, shard: str, key: str) -> dict[str, Any]:
+        """A group's setting for each take of a shard where it is not empty."""
+        groups = self._groups[corpus]
+        found = {t.name: groups[t.group][key] for t in self.shards[corpus][shard]}
+        return {take: value for take, value in found.items() if value}
+
+    def labels(self, string: str) -> list[str]:
+        """Different labels of a string, in the order of their first use."""
+        return list(dict.fromkeys(self.config.strings[string].labels.split()))
+
+    def experiment_folder(self, experiment: str) -> str:
+        """results/{corpus} of an experiment's corpus."""
+        return f"results/{self.config.experiments[experiment].corpus}"
+
+    def ranks(self, experiment: str) -> list[str]:
+        """Ranks of all measures of an experiment."""
+        folder = self.experiment_folder(experiment)
+        return [f"{folder}/ranks/{experiment}/{m}.h5" for m in self.config.experiments[experiment].measures]
+
+    def scores(self) -> list[str]:
+        """Scores of all experiments."""
+        return [f"{self.experiment_folder(e)}/scores/{e}.csv" for e in self.config.experiments]
+
+    def lengths(self) -> list[str]:
+        """Lengths and largest jumps of all strings."""
+        return [f"results/{s.corpus}/synthesis/{name}.csv" for name, s in self.config.strings.items()]
+
+    def tables(self) -> list[str]:
+        """Tables that this config's experiments can fill."""
+        first, second = self.config.tables.experiment1, self.config.tables.experiment2
+        which = {"table1": first, "table2": first, "table3": second, "table4": first, "table5": second}
+        found = [f"results/{name}.csv" for name in PRINTED if which[name]]
+        return found + (["results/label_counts.csv"] if self.config.tables.string else [])
+
+    def figures(self) -> list[str]:
+        """Figures of [H] that this config's string can fill."""
+        if not self.config.tables.string:
+            return []
+        changes = [c for c in CHANGES if c in self.labels(self.config.tables.string)]
+        return ["results/fig4.png", "results/fig5.png"] + (["results/fig6.png"] if changes else [])
+
+    def film_names(self) -> list[tuple[str, str]]:
+        """Corpus and name of each film that `all` makes."""
+        found = [(s.corpus, name) for name, s in self.config.strings.items()]
+        return found + [(f.corpus, name) for name, f in self.config.films.items()]
+
+    def films(self) -> list[str]:
+        """Films and their contact sheets."""
+        return [
+            f"results/{corpus}/film/{name}{ending}"
+            for corpus, name in self.film_names()
+            for ending in (".mp4", "_sheet.png")
+        ]
+
+    def logs(self, corpus: str) -> dict[str, str]:
+        """Puppet logs that are ranked in a corpus: name → path. data/puppet serves every corpus."""
+        folders = ["data/puppet"]
+        if corpus in self.config.search:
+            folders.insert(0, _with_recordings(self.config.search[corpus], self.config.recordings))
+        found: dict[str, str] = {}
+        for folder in folders:
+            for path in sorted([*Path(folder).glob("*.csv"), *Path(folder).glob("*.csv.gz")]):
+                found.setdefault(path.name.removesuffix(".gz").removesuffix(".csv"), str(path))
+        return found
+
+    def searches(self) -> list[str]:
+        """Rankings of the logs in the folders that the config names."""
+        return [f"results/{c}/search/{q}.csv" for c in self.config.search for q in self.logs(c)]
+
+    def log_of(self, corpus: str, query: str) -> str:
+        """Path of a puppet log."""
+        return self.logs(corpus).get(query, f"data/puppet/{query}.csv")
+
+    def stretch(self, corpus: str, name: str) -> tuple[str, float, float | None]:
+        """Take, first and last second of a body's film: one of the config's, or a whole take by its name."""
+        film = self.config.films.get(name)
+        if film is not None and film.corpus == corpus:
+            return film.take, film.start_s, film.end_s
+        return name, 0.0, None
+
+
+def plan(config: Mapping[str, Any]) -> Flow:
+    """Check the config and find the takes, or end the program with one sentence."""
+    try:
+        flow = Flow(check(config))
+        _ = flow.shards
+        for name in flow.config.films:
+            film = flow.config.films[name]
+            flow.shard_of(film.corpus, film.take)
+    except InputError as error:
+        # one sentence; an exception here would be shown with the Snakefile's lines around it
+        print(error, file=sys.stderr)
+        raise SystemExit(1) from None
+    return flow
+
+
+def say_last(snakemake_log: str) -> None:
+    """Repeat the sentences of failed jobs when the program ends, so that they are the last on the terminal."""
+    import atexit
+    import re
+
+    try:
+        lines = Path(snakemake_log).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return
+    logs = [m.group(1) for line in lines if (m := re.match(r"\s+log: (.+?) \(check log file", line))]
+    said = list(dict.fromkeys(s for path in logs if (s := job.sentence(path))))
+    if said:
+        atexit.register(lambda: print("\n" + "\n".join(said), file=sys.stderr, flush=True))

@@ -1,0 +1,151 @@
+"""Takes of a corpus: how each is read, and what happens in it.
+
+A group's settings come as a mapping, the keys of `config.Group`, with `{recordings}` filled in.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+from miburi import formats
+from miburi.errors import InputError
+from miburi.formats import text
+from miburi.formats.annotations import Annotation, read_annotations
+from miburi.formats.labels import read_labels
+from miburi.motion import Motion
+
+Group = Mapping[str, Any]
+
+COMPANIONS = ("skeleton", "calibration", "columns")
+"""Keys of a group that name files which reading a take needs."""
+
+
+@dataclass(frozen=True)
+class Take:
+    """A recording before it is read.
+
+    Parameters
+    ----------
+    name
+        Of the take.
+    subject
+        Who performs; one name for all where the corpus does not tell.
+    recording
+        Path of the file.
+    group
+        Place of its group in `groups`.
+    seconds
+        About how long it is.
+    """
+
+    name: str
+    subject: str
+    recording: str
+    group: int
+    seconds: float
+
+
+def matched(expression: str, group: str, path: str, where: str) -> str:
+    """What a named group of an expression finds in a path; "" for no expression."""
+    if not expression:
+        return ""
+    found = re.search(expression, path)
+    if found is None:
+        raise InputError(f"config: {where}.{group}: {expression!r} does not match {path!r}")
+    return found.group(group)
+
+
+def filled(template: str, take: Take, group: Group) -> str:
+    """A path of a group's settings with `{subject}` and `{take}` filled in."""
+    subject = group["stand_ins"].get(take.subject, take.subject)
+    return template.replace("{subject}", subject).replace("{take}", take.name)
+
+
+def read_take(take: Take, group: Group) -> Motion:
+    """Read a take as its group says; errors as `formats.read`."""
+    chosen = dict(group)
+    for key in COMPANIONS:
+        chosen[key] = filled(chosen[key], take, group)
+    chosen["fps"] = group["rates"].get(take.name, group["fps"])
+    return formats.read(take.recording, corpus=SimpleNamespace(**chosen))
+
+
+def label_file(take: Take, group: Group) -> str:
+    """Path of a hand take's labels."""
+    if group["labels"]:
+        return filled(group["labels"], take, group)
+    recording = Path(take.recording)
+    return str(recording.with_name(text.stem(recording) + ".lab"))
+
+
+def annotate_hand(
+    found: Sequence[Take], parts: Sequence[Group], lengths: Mapping[str, tuple[int, float]]
+) -> list[Annotation]:
+    """Labels of takes as annotations, with the columns `start_frame` and `end_frame` (exclusive).
+
+    Parameters
+    ----------
+    lengths
+        Take → frames and frames per second; takes that are not there are left out.
+
+    Raises
+    ------
+    InputError
+        A label file is missing or damaged.
+    """
+    rows = []
+    for take in found:
+        if take.name not in lengths:
+            continue
+        frames, fps = lengths[take.name]
+        group = parts[take.group]
+        path = label_file(take, group)
+        if not os.path.exists(path):
+            raise InputError(
+                f"{path}: there is no such file; it should hold the labels of the take {take.name!r}"
+            )
+        for start, end, label in read_labels(path, fps=fps, unit=group["label_unit"], frames=frames):
+            rows.append(_annotation(take, start, end, fps, label))
+    return rows
+
+
+def annotate_bodies(
+    found: Sequence[Take], parts: Sequence[Group], lengths: Mapping[str, tuple[int, float]]
+) -> list[Annotation]:
+    """Keywords of takes: of the whole take from its path, or of intervals from annotation files."""
+    rows = []
+    for number, group in enumerate(parts):
+        mine = {t.name: t for t in found if t.group == number and t.name in lengths}
+        for take in mine.values():
+            frames, fps = lengths[take.name]
+            if group["keyword"]:
+                path = os.path.relpath(take.recording, group["folder"])
+                rows.append(
+                    _annotation(take, 0, frames, fps, matched(group["keyword"], "keyword", path, "groups"))
+                )
+        if group["annotations"]:
+            path = group["annotations"]
+            for row in read_annotations(path):
+                if row.take not in mine:
+                    continue
+                frames, fps = lengths[row.take]
+                start, end = round(row.start_s * fps), min(round(row.end_s * fps), frames)
+                # one frame too long is rounding, more is another recording
+                if start >= end or row.end_s * fps > frames + max(1.5, 0.1 * fps):
+                    raise InputError(
+                        f"{path}: {row.keyword!r} from {row.start_s:g} to {row.end_s:g} s lies outside the take "
+                        f"{row.take!r} of {frames / fps:g} s"
+                    )
+                rows.append(_annotation(mine[row.take], start, end, fps, row.keyword))
+    return sorted(rows, key=lambda r: (r.take, r.start_s, r.end_s, r.keyword))
+
+
+def _annotation(take: Take, start: int, end: int, fps: float, keyword: str) -> Annotation:
+    more = {"start_frame": str(start), "end_frame": str(end), "subject": take.subject}
+    return Annotation(take.name, start / fps, end / fps, keyword, more)

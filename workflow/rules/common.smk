@@ -1,0 +1,42 @@
+# What all rules share: the checked config, takes and shards, digests of code, sizes of jobs. No rules.
+
+import os
+from pathlib import Path
+
+from miburi import corpora, flow
+from miburi.code import code_digest
+
+# one thread in each sum, so that the same inputs give the same bytes; jobs are what runs side by side
+os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"))
+
+SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
+FLOW = flow.plan(config)
+CONFIG = FLOW.config
+
+
+wildcard_constraints:
+    corpus="[^/]+",
+    shard="all|[01]+(-[01]+)?|-[01]+",
+    experiment="[^/]+",
+    string="[^/]+",
+    name="[^/]+",
+    query="[^/]+",
+
+
+def code(script):
+    """Digest of a script and all library modules that it needs."""
+    return code_digest(str(SCRIPTS / script))
+
+
+def megabytes(base, factor=0):
+    """Memory of a job: a base and a multiple of its input's size."""
+    return lambda wildcards, input: int(base + factor * input.size_mb)
+
+
+def minutes(base, per_mb=0.0):
+    """Run time of a job: a base and so much for each megabyte of its input."""
+    return lambda wildcards, input: int(base + per_mb * input.size_mb)
+
+
+onerror:
+    flow.say_last(log)

@@ -1,0 +1,69 @@
+# What stands in for people: simulated recordings in the devices' own formats, and the download of real ones.
+
+for _name in FLOW.performed():
+
+    rule:
+        name:
+            f"perform_{_name}"
+        output:
+            FLOW.performance(_name),
+        log:
+            f"results/logs/perform/{_name}.log",
+        benchmark:
+            f"results/benchmarks/perform/{_name}.tsv"
+        params:
+            perform=FLOW.corpus(_name).perform,
+            small=FLOW.corpus(_name).small,
+            seed=CONFIG.seed,
+            code=code(f"perform_{FLOW.corpus(_name).perform}.py"),
+        resources:
+            mem_mb=megabytes(1500),
+            runtime=minutes(20),
+        script:
+            f"../scripts/perform_{FLOW.corpus(_name).perform}.py"
+
+
+for _name, _subject in FLOW.fetched():
+
+    rule:
+        name:
+            f"fetch_{_name}_{_subject}"
+        output:
+            FLOW.downloads(_name, _subject),
+        log:
+            f"results/logs/fetch/{_name}/{_subject}.log",
+        benchmark:
+            f"results/benchmarks/fetch/{_name}/{_subject}.tsv"
+        params:
+            site=FLOW.corpus(_name).site,
+            subject=_subject,
+            code=code("fetch.py"),
+        resources:
+            mem_mb=megabytes(500),
+            runtime=minutes(120),
+        script:
+            "../scripts/fetch.py"
+
+
+rule queries:
+    input:
+        motion=lambda wildcards: FLOW.of_shards(wildcards.corpus, "motion"),
+        segments=lambda wildcards: FLOW.of_shards(wildcards.corpus, "segments"),
+        takes="results/{corpus}/takes.csv",
+        annotations="results/{corpus}/annotations.tsv",
+    output:
+        table="data/raw/{corpus}/queries/{experiment}/queries.tsv",
+        logs=directory("data/raw/{corpus}/queries/{experiment}/logs"),
+    log:
+        "results/logs/queries/{corpus}/{experiment}.log",
+    benchmark:
+        "results/benchmarks/queries/{corpus}/{experiment}.tsv"
+    params:
+        experiment=lambda wildcards: FLOW.to_play(wildcards.experiment),
+        seed=CONFIG.seed,
+        code=code("queries.py"),
+    resources:
+        mem_mb=megabytes(1000, 10),
+        runtime=minutes(20, 0.1),
+    script:
+        "../scripts/queries.py"

@@ -1,0 +1,65 @@
+# Queries are played, read like any log, and every measure ranks the segments for them.
+
+
+rule query_features:
+    input:
+        table="data/raw/{corpus}/queries/{experiment}/queries.tsv",
+        logs="data/raw/{corpus}/queries/{experiment}/logs",
+    output:
+        "results/{corpus}/queries/{experiment}.h5",
+    log:
+        "results/logs/query_features/{corpus}/{experiment}.log",
+    benchmark:
+        "results/benchmarks/query_features/{corpus}/{experiment}.tsv"
+    params:
+        settings=CONFIG.features.model_dump(),
+        code=code("query_features.py"),
+    resources:
+        mem_mb=megabytes(800, 20),
+        runtime=minutes(10, 0.1),
+    script:
+        "../scripts/query_features.py"
+
+
+rule rank:
+    input:
+        index="results/{corpus}/index.h5",
+        table="data/raw/{corpus}/queries/{experiment}/queries.tsv",
+        queries="results/{corpus}/queries/{experiment}.h5",
+    output:
+        "results/{corpus}/ranks/{experiment}/{measure}.h5",
+    log:
+        "results/logs/rank/{corpus}/{experiment}/{measure}.log",
+    benchmark:
+        "results/benchmarks/rank/{corpus}/{experiment}/{measure}.tsv"
+    params:
+        reduction=CONFIG.index.reduction,
+        code=code("rank.py"),
+    resources:
+        mem_mb=megabytes(1000, 10),
+        runtime=minutes(10, 1),
+    script:
+        "../scripts/rank.py"
+
+
+rule search:
+    input:
+        index="results/{corpus}/index.h5",
+        takes="results/{corpus}/takes.csv",
+        log=lambda wildcards: FLOW.log_of(wildcards.corpus, wildcards.query),
+    output:
+        "results/{corpus}/search/{query}.csv",
+    log:
+        "results/logs/search/{corpus}/{query}.log",
+    benchmark:
+        "results/benchmarks/search/{corpus}/{query}.tsv"
+    params:
+        measure=CONFIG.search_measure,
+        reduction=CONFIG.index.reduction,
+        settings=CONFIG.features.model_dump(),
+        code=code("search.py"),
+    resources:
+        mem_mb=megabytes(1000, 10),
+        runtime=minutes(10, 0.1),
+    script:
+        "../scripts/search.py"

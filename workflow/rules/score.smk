@@ -1,0 +1,23 @@
+# Ranks against what was meant: the two protocols of [P], and ranking across subjects.
+
+
+rule score:
+    input:
+        ranks=lambda wildcards: FLOW.ranks(wildcards.experiment),
+        table="data/raw/{corpus}/queries/{experiment}/queries.tsv",
+        index="results/{corpus}/index.h5",
+        takes="results/{corpus}/takes.csv",
+        annotations="results/{corpus}/annotations.tsv",
+    output:
+        "results/{corpus}/scores/{experiment}.csv",
+    log:
+        "results/logs/score/{corpus}/{experiment}.log",
+    benchmark:
+        "results/benchmarks/score/{corpus}/{experiment}.tsv"
+    params:
+        code=code("score.py"),
+    resources:
+        mem_mb=megabytes(800, 5),
+        runtime=minutes(10),
+    script:
+        "../scripts/score.py"
