@@ -31,9 +31,9 @@ localrules:
 rule all:
     default_target: True
     input:
-        tables(),
-        figures(),
-        films(),
-        searches(),
+        FLOW.tables(),
+        FLOW.figures(),
+        FLOW.films(),
+        FLOW.searches(),
         "results/metrics.json",
         "results/report.html",

@@ -24,25 +24,64 @@ class Model(BaseModel):
 class Group(Model):
     """Recordings of one kind in one folder."""
 
-    folder: str = Field(description="Folder of the recordings; `{recordings}` stands for the key of that name.")
+    folder: str = Field(
+        description="Folder of the recordings; `{recordings}` stands for the key of that name."
+    )
     files: list[str] = Field(description="Patterns of the recordings below the folder.")
     exclude: list[str] = Field([], description="Patterns of recordings that are left out.")
-    take: str = Field("", description="Regular expression whose group `take` is the take's name in the path below the folder; empty: the path without endings, `/` written as `-`.")
-    subject: str = Field("", description="Regular expression whose group `subject` tells who performs; empty: the corpus has one subject.")
-    skeleton: str = Field("", description="ASF of the AMC recordings; `{subject}` and `{recordings}` are filled in. Empty: found beside the recording.")
+    take: str = Field(
+        "",
+        description="Regular expression whose group `take` is the take's name in the path below the folder; empty: the path without endings, `/` written as `-`.",
+    )
+    subject: str = Field(
+        "",
+        description="Regular expression whose group `subject` tells who performs; empty: the corpus has one subject.",
+    )
+    skeleton: str = Field(
+        "",
+        description="ASF of the AMC recordings; `{subject}` and `{recordings}` are filled in. Empty: found beside the recording.",
+    )
     stand_ins: dict[str, str] = Field({}, description="Subject → subject whose skeleton is used instead.")
-    keyword: str = Field("", description="Regular expression whose group `keyword` is the keyword of the whole take.")
-    annotations: str = Field("", description="TSV with take, start_s, end_s, keyword; `{recordings}` is filled in.")
-    cut: Literal["PPCA", "PCA", "whole"] = Field("PPCA", description="How takes become segments: by segmentation, or each take is one.")
-    fps: float | None = Field(None, gt=0, description="Frames per second, where recordings name none or a wrong rate.")
-    rates: dict[str, float] = Field({}, description="Take → frames per second, where single headers are wrong.")
-    unit: float | None = Field(None, gt=0, description="Metres per unit of the recordings; absent: found by the size of the body.")
-    up: Literal["x", "y", "z"] | None = Field(None, description="The recordings' upward axis; absent: found by the rest pose.")
-    joints: dict[str, str] = Field({}, description="Joint of the 42 values → name in these recordings, where the tables do not know it.")
-    calibration: str = Field("", description="Glove: calibration of the wearer; empty: the only .yaml beside the log.")
-    columns: str = Field("", description="Glove: column map of a foreign logger, such as config/gloves/cyberglove_rps.yaml.")
-    labels: str = Field("", description="Hand: label file of a take; `{take}` and `{recordings}` are filled in. Empty: `{take}.lab` beside the log.")
-    label_unit: Literal["100ns", "frames", "seconds"] | None = Field(None, description="Unit of the times in HTK label files; absent: by their size.")
+    keyword: str = Field(
+        "", description="Regular expression whose group `keyword` is the keyword of the whole take."
+    )
+    annotations: str = Field(
+        "", description="TSV with take, start_s, end_s, keyword; `{recordings}` is filled in."
+    )
+    keywords: str = Field(
+        "", description="TSV with take and keyword, of whole takes; `{recordings}` is filled in."
+    )
+    cut: Literal["PPCA", "PCA", "whole"] = Field(
+        "PPCA", description="How takes become segments: by segmentation, or each take is one."
+    )
+    fps: float | None = Field(
+        None, gt=0, description="Frames per second, where recordings name none or a wrong rate."
+    )
+    rates: dict[str, float] = Field(
+        {}, description="Take → frames per second, where single headers are wrong."
+    )
+    unit: float | None = Field(
+        None, gt=0, description="Metres per unit of the recordings; absent: found by the size of the body."
+    )
+    up: Literal["x", "y", "z"] | None = Field(
+        None, description="The recordings' upward axis; absent: found by the rest pose."
+    )
+    joints: dict[str, str] = Field(
+        {}, description="Joint of the 42 values → name in these recordings, where the tables do not know it."
+    )
+    calibration: str = Field(
+        "", description="Glove: calibration of the wearer; empty: the only .yaml beside the log."
+    )
+    columns: str = Field(
+        "", description="Glove: column map of a foreign logger, such as config/gloves/cyberglove_rps.yaml."
+    )
+    labels: str = Field(
+        "",
+        description="Hand: label file of a take; `{take}` and `{recordings}` are filled in. Empty: `{take}.lab` beside the log.",
+    )
+    label_unit: Literal["100ns", "frames", "seconds"] | None = Field(
+        None, description="Unit of the times in HTK label files; absent: by their size."
+    )
 
     @field_validator("take", "subject", "keyword")
     @classmethod
@@ -61,13 +100,22 @@ class Corpus(Model):
     """A named set of recordings."""
 
     kind: Literal["hand", "body"] = Field(description="What was recorded.")
-    perform: Literal["janken", "everyday", ""] = Field("", description="The simulation that performs the recordings into data/raw/{corpus}; empty: they are there.")
+    perform: Literal["janken", "everyday", ""] = Field(
+        "",
+        description="The simulation that performs the recordings into data/raw/{corpus}; empty: they are there.",
+    )
     small: bool = Field(False, description="A simulated corpus of a minute, for trying and testing.")
-    fetch: list[str] = Field([], description="Subjects of the CMU database that are fetched into data/raw/{corpus}.")
+    fetch: list[str] = Field(
+        [], description="Subjects of the CMU database that are fetched into data/raw/{corpus}."
+    )
     site: str = Field("http://mocap.cs.cmu.edu", description="Where the CMU database lies.")
     groups: list[Group] = Field([], description="The recordings; a simulated or fetched corpus needs none.")
-    once: bool = Field(False, description="A take that several files hold is read from the first; otherwise it is an error.")
-    simulated: bool = Field(False, description="The recordings are of simulated people; simulated corpora say so by themselves.")
+    once: bool = Field(
+        False, description="A take that several files hold is read from the first; otherwise it is an error."
+    )
+    simulated: bool = Field(
+        False, description="The recordings are of simulated people; simulated corpora say so by themselves."
+    )
 
     @model_validator(mode="after")
     def _has_recordings(self) -> Corpus:
@@ -79,7 +127,9 @@ class Corpus(Model):
 class Segmentation(Model):
     """PPCA segmentation (Barbič et al. 2004)."""
 
-    variance: float = Field(0.95, gt=0, lt=1, description="Share of the variance that the subspace keeps (τ).")
+    variance: float = Field(
+        0.95, gt=0, lt=1, description="Share of the variance that the subspace keeps (τ)."
+    )
     window_s: float = Field(1.5, gt=0, description="Length of the first window, seconds.")
     ahead_s: float = Field(1.25, gt=0, description="Length of the look-ahead, seconds.")
     step_s: float = Field(1 / 12, gt=0, description="Step of the window, seconds.")
@@ -107,12 +157,16 @@ class Train(Model):
 
     states: int = Field(3, ge=1, description="States of each label.")
     covariance: Literal["diagonal", "full"] = Field("diagonal", description="Form of the covariance.")
-    exit: bool = Field(True, description="The last state has an exit arc, as in HTK; false: as printed in [H].")
+    exit: bool = Field(
+        True, description="The last state has an exit arc, as in HTK; false: as printed in [H]."
+    )
     iterations: int = Field(20, ge=1, description="Iterations of EM at most.")
     tolerance: float = Field(1e-4, ge=0, description="EM stops when the log-likelihood per frame gains less.")
     floor: float = Field(0.01, ge=0, description="Variance floor, as a share of the variance of all frames.")
     half: tuple[int, int] = Field((1, 1), description="Half lengths L1, L2 of the delta windows.")
-    durations: Literal["exact", "product"] = Field("exact", description="Durations from the model, or by eqs. 9-11 as printed.")
+    durations: Literal["exact", "product"] = Field(
+        "exact", description="Durations from the model, or by eqs. 9-11 as printed."
+    )
 
 
 class String(Model):
@@ -138,9 +192,14 @@ class Experiment(Model):
 
     corpus: Name = Field(description="Corpus that is ranked.")
     keywords: list[str] = Field(min_length=1, description="What the users look for.")
-    protocols: list[Literal[1, 2, 3]] = Field([1, 2], description="1: the shown clip is imitated; 2: the keyword is imagined; 3: as 1, only other subjects are ranked.")
+    protocols: list[Literal[1, 2, 3]] = Field(
+        [1, 2],
+        description="1: the shown clip is imitated; 2: the keyword is imagined; 3: as 1, only other subjects are ranked.",
+    )
     users: int = Field(5, ge=1, description="Simulated users.")
-    split: Literal["test", "development"] = Field("test", description="Which users; settings are chosen with development users only.")
+    split: Literal["test", "development"] = Field(
+        "test", description="Which users; settings are chosen with development users only."
+    )
     measures: list[str] = Field(min_length=1, description="Measures that are compared.")
 
 
@@ -149,7 +208,9 @@ class Tables(Model):
 
     experiment1: Name | None = Field(None, description="Experiment of tables 1, 2 and 4.")
     experiment2: Name | None = Field(None, description="Experiment of tables 3 and 5.")
-    string: Name | None = Field(None, description="String of figures 4, 5 and 6 and of the lengths in label_counts.csv.")
+    string: Name | None = Field(
+        None, description="String of figures 4, 5 and 6 and of the lengths in label_counts.csv."
+    )
 
 
 class Render(Model):
@@ -165,9 +226,15 @@ class Config(Model):
     """Everything that a run of the workflow depends on."""
 
     seed: int = Field(2011, description="All randomness derives from it.")
-    recordings: str = Field("../shared/data", description="Folder of real recordings, `{recordings}` in groups.")
-    on_error: Literal["stop", "skip"] = Field("stop", description="A damaged recording stops its corpus, or is set aside and listed in skipped.csv.")
-    shard_seconds: float = Field(240.0, gt=0, description="About how many seconds of motion one job processes.")
+    recordings: str = Field(
+        "../shared/data", description="Folder of real recordings, `{recordings}` in groups."
+    )
+    on_error: Literal["stop", "skip"] = Field(
+        "stop", description="A damaged recording stops its corpus, or is set aside and listed in skipped.csv."
+    )
+    shard_seconds: float = Field(
+        240.0, gt=0, description="About how many seconds of motion one job processes."
+    )
     corpora: dict[Name, Corpus] = Field(min_length=1, description="The sets of recordings.")
     segment: Segmentation = Field(default_factory=Segmentation, description="Segmentation.")
     features: Features = Field(default_factory=Features, description="Features of bodies.")
@@ -178,15 +245,24 @@ class Config(Model):
     render: Render = Field(default_factory=Render, description="Rendering.")
     experiments: dict[Name, Experiment] = Field({}, description="Retrieval experiments.")
     tables: Tables = Field(default_factory=Tables, description="What the papers' tables show.")
-    search: dict[Name, str] = Field({}, description="Corpus → folder of puppet logs that are ranked in results/{corpus}/search/; `{recordings}` is filled in.")
-    search_measure: str = Field("DSPM(PCA)+Jvh", description="Measure of results/{corpus}/search/{query}.csv.")
-    baseline: str = Field("", description="Committed metrics that `snakemake check` compares with; empty: none.")
+    search: dict[Name, str] = Field(
+        {},
+        description="Corpus → folder of puppet logs that are ranked in results/{corpus}/search/; `{recordings}` is filled in.",
+    )
+    search_measure: str = Field(
+        "DSPM(PCA)+Jvh", description="Measure of results/{corpus}/search/{query}.csv."
+    )
+    baseline: str = Field(
+        "", description="Committed metrics that `snakemake check` compares with; empty: none."
+    )
 
     @model_validator(mode="after")
     def _refers_to_what_is_there(self) -> Config:
         def known(name: str, names: Mapping[str, Any], where: str, what: str) -> None:
             if name not in names:
-                raise ValueError(f"{where}: there is no {what} {name!r}; there are {', '.join(sorted(names)) or 'none'}")
+                raise ValueError(
+                    f"{where}: there is no {what} {name!r}; there are {', '.join(sorted(names)) or 'none'}"
+                )
 
         for n, s in self.strings.items():
             known(s.corpus, self.corpora, f"strings.{n}.corpus", "corpus")
@@ -227,7 +303,11 @@ def check(config: Mapping[str, Any]) -> Config:
             raise InputError(f"config: the key {key!r} is missing") from None
         message = first["msg"].removeprefix("Value error, ")
         found = first.get("input")
-        shown = f" (found {found!r})" if isinstance(found, (str, int, float, bool)) and repr(found) not in message else ""
+        shown = (
+            f" (found {found!r})"
+            if isinstance(found, (str, int, float, bool)) and repr(found) not in message
+            else ""
+        )
         raise InputError(f"config: {key + ': ' if key else ''}{message}{shown}") from None
 
 

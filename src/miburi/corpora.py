@@ -18,11 +18,12 @@ from miburi.formats import text
 from miburi.recordings import Take, matched
 
 CMU_TAKES = "config/cmu/takes.tsv"
-CMU_ANNOTATIONS = "config/cmu/annotations.tsv"
+CMU_KEYWORDS = "config/cmu/keywords.tsv"
 
 # Bytes of one second of motion, roughly; only the sizes of jobs depend on it.
 _BYTES = {".amc": 96e3, ".bvh": 60e3, ".csv": 3e3}
 _COMPRESSED = 0.3
+_CMU_SECONDS = 17.0
 
 
 def groups(name: str, corpus: settings.Corpus) -> list[settings.Group]:
@@ -40,7 +41,7 @@ def groups(name: str, corpus: settings.Corpus) -> list[settings.Group]:
             folder=folder,
             files=["*.amc"],
             skeleton=folder + "/{subject}.asf",
-            annotations=CMU_ANNOTATIONS,
+            keywords=CMU_KEYWORDS,
             fps=120.0,
             rates={take: fps for take, fps in rates.items() if fps != 120.0},
         )
@@ -60,7 +61,7 @@ def takes(name: str, config: settings.Config) -> list[Take]:
         found = _performed(name, corpus, config.seed)
     elif corpus.fetch:
         found = [
-            Take(r["take"], r["subject"], f"data/raw/{name}/{r['take']}.amc", 0, float(r["seconds"]))
+            Take(r["take"], r["subject"], f"data/raw/{name}/{r['take']}.amc", 0, _CMU_SECONDS)
             for r in _cmu(corpus.fetch)
         ]
     else:

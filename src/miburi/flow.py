@@ -24,9 +24,8 @@ _READ = (
     "calibration",
     "columns",
 )
-_ANNOTATED = ("folder", "keyword", "annotations", "labels", "label_unit", "stand_ins")
+_ANNOTATED = ("folder", "keyword", "keywords", "annotations", "labels", "label_unit", "stand_ins")
 
-PRINTED = ("table1", "table2", "table3", "table4", "table5")
 CHANGES = ("rs", "sp", "pr")
 """The changes of [H], fig. 6."""
 
@@ -69,6 +68,32 @@ class Flow:
             ]
             for name, corpus in self.config.corpora.items()
         }
+
+    def performed(self) -> list[str]:
+        """Names of the simulated corpora."""
+        return [name for name, corpus in self.config.corpora.items() if corpus.perform]
+
+    def performance(self, corpus: str) -> list[str]:
+        """Files of a simulated corpus."""
+        folder = f"data/raw/{corpus}"
+        found = [t.recording for t in self.takes[corpus]] + [f"{folder}/annotations.tsv"]
+        if self.corpus(corpus).perform == "janken":
+            found += [f"{folder}/wearer.yaml", *self.annotation_files(corpus)]
+        return found
+
+    def fetched(self) -> list[tuple[str, str]]:
+        """Corpus and subject of everything that is fetched."""
+        return [(name, subject) for name, corpus in self.config.corpora.items() for subject in corpus.fetch]
+
+    def downloads(self, corpus: str, subject: str) -> list[str]:
+        """Files of a fetched subject."""
+        mine = [t.recording for t in self.takes[corpus] if t.subject == subject]
+        return [f"data/raw/{corpus}/{subject}.asf", *mine]
+
+    def simulated(self, corpus: str) -> bool:
+        """Whether a corpus is of simulated people."""
+        settings = self.corpus(corpus)
+        return bool(settings.perform) or settings.simulated
 
     def of_shards(self, corpus: str, stage: str) -> list[str]:
         """Artefacts of a stage for all shards of a corpus."""
@@ -124,7 +149,7 @@ class Flow:
         groups = self._groups[corpus]
         if self.corpus(corpus).kind == "hand":
             return [recordings.label_file(t, groups[t.group]) for t in self.takes[corpus]]
-        return sorted({g["annotations"] for g in groups if g["annotations"]})
+        return sorted({g[key] for g in groups for key in ("annotations", "keywords") if g[key]})
 
     def per_take(self, corpus: str, shard: str, key: str) -> dict[str, Any]:
         """A group's setting for each take of a shard where it is not empty."""
@@ -135,6 +160,16 @@ class Flow:
     def labels(self, string: str) -> list[str]:
         """Different labels of a string, in the order of their first use."""
         return list(dict.fromkeys(self.config.strings[string].labels.split()))
+
+    def string(self, string: str) -> dict[str, Any]:
+        """Labels, speed and length of a string."""
+        return self.config.strings[string].model_dump(exclude={"corpus"})
+
+    def to_play(self, experiment: str) -> dict[str, Any]:
+        """What playing the queries of an experiment needs."""
+        settings = self.config.experiments[experiment]
+        played = settings.model_dump(exclude={"corpus", "measures"})
+        return {**played, "imagined": self.corpus(settings.corpus).perform == "everyday"}
 
     def experiment_folder(self, experiment: str) -> str:
         """results/{corpus} of an experiment's corpus."""
@@ -147,25 +182,61 @@ class Flow:
 
     def scores(self) -> list[str]:
         """Scores of all experiments."""
-        return [f"{self.experiment_folder(e)}/scores/{e}.csv" for e in self.config.experiments]
+        return [self.scores_of(e) for e in self.config.experiments]
 
     def lengths(self) -> list[str]:
         """Lengths and largest jumps of all strings."""
         return [f"results/{s.corpus}/synthesis/{name}.csv" for name, s in self.config.strings.items()]
 
-    def tables(self) -> list[str]:
-        """Tables that this config's experiments can fill."""
+    def filled_tables(self) -> dict[str, str]:
+        """Tables of [P] that this config's experiments fill, and the experiment of each."""
         first, second = self.config.tables.experiment1, self.config.tables.experiment2
         which = {"table1": first, "table2": first, "table3": second, "table4": first, "table5": second}
-        found = [f"results/{name}.csv" for name in PRINTED if which[name]]
+        return {table: experiment for table, experiment in which.items() if experiment}
+
+    def tables(self) -> list[str]:
+        """Tables that this config fills."""
+        found = [f"results/{name}.csv" for name in self.filled_tables()]
         return found + (["results/label_counts.csv"] if self.config.tables.string else [])
+
+    def scores_of(self, experiment: str) -> str:
+        """Scores of an experiment."""
+        return f"{self.experiment_folder(experiment)}/scores/{experiment}.csv"
+
+    def shown_corpus(self) -> str:
+        """Corpus of the string that [H]'s figures show."""
+        return self.config.strings[self.config.tables.string or ""].corpus
+
+    def of_string(self, path: str) -> str:
+        """A file of that corpus; `{string}` is filled in."""
+        return f"results/{self.shown_corpus()}/{path}".replace("{string}", self.config.tables.string or "")
+
+    def changes(self) -> list[str]:
+        """The changes of [H], fig. 6, that the string holds."""
+        return [c for c in CHANGES if c in self.labels(self.config.tables.string or "")]
+
+    def of_corpora(self, path: str) -> list[str]:
+        """A file of every corpus."""
+        return [f"results/{name}/{path}" for name in self.config.corpora]
+
+    def indices(self) -> list[str]:
+        """Indices of all corpora that are searched."""
+        used = [e.corpus for e in self.config.experiments.values()] + list(self.config.search)
+        return [f"results/{name}/index.h5" for name in dict.fromkeys(used)]
+
+    def described(self) -> dict[str, dict[str, Any]]:
+        """What the report says of each corpus."""
+        return {
+            name: {"kind": corpus.kind, "simulated": self.simulated(name)}
+            for name, corpus in self.config.corpora.items()
+        }
 
     def figures(self) -> list[str]:
         """Figures of [H] that this config's string can fill."""
         if not self.config.tables.string:
             return []
-        changes = [c for c in CHANGES if c in self.labels(self.config.tables.string)]
-        return ["results/fig4.png", "results/fig5.png"] + (["results/fig6.png"] if changes else [])
+        strips = ["results/fig6.png"] if self.changes() else []
+        return ["results/fig4.png", "results/fig5.png", *strips]
 
     def film_names(self) -> list[tuple[str, str]]:
         """Corpus and name of each film that `all` makes."""
@@ -198,6 +269,11 @@ class Flow:
     def log_of(self, corpus: str, query: str) -> str:
         """Path of a puppet log."""
         return self.logs(corpus).get(query, f"data/puppet/{query}.csv")
+
+    def motion_of(self, corpus: str, name: str) -> str:
+        """The motion artefact that holds what a film shows."""
+        take = self.stretch(corpus, name)[0]
+        return f"results/{corpus}/motion/{self.shard_of(corpus, take)}.h5"
 
     def stretch(self, corpus: str, name: str) -> tuple[str, float, float | None]:
         """Take, first and last second of a body's film: one of the config's, or a whole take by its name."""

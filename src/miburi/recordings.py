@@ -5,6 +5,7 @@ A group's settings come as a mapping, the keys of `config.Group`, with `{recordi
 
 from __future__ import annotations
 
+import csv
 import os
 import re
 from collections.abc import Mapping, Sequence
@@ -129,6 +130,10 @@ def annotate_bodies(
                 rows.append(
                     _annotation(take, 0, frames, fps, matched(group["keyword"], "keyword", path, "groups"))
                 )
+        if group["keywords"]:
+            for name, keyword in read_keywords(group["keywords"]):
+                if name in mine:
+                    rows.append(_annotation(mine[name], 0, *lengths[name], keyword))
         if group["annotations"]:
             path = group["annotations"]
             for row in read_annotations(path):
@@ -144,6 +149,16 @@ def annotate_bodies(
                     )
                 rows.append(_annotation(mine[row.take], start, end, fps, row.keyword))
     return sorted(rows, key=lambda r: (r.take, r.start_s, r.end_s, r.keyword))
+
+
+def read_keywords(path: str) -> list[tuple[str, str]]:
+    """A TSV of takes and the keywords of the whole of them."""
+    with open(path, encoding="utf-8", newline="") as file:
+        table = csv.DictReader(file, delimiter="\t")
+        for column in ("take", "keyword"):
+            if column not in (table.fieldnames or []):
+                raise InputError(f"{path}, line 1: the column {column!r} is missing")
+        return [(row["take"], row["keyword"]) for row in table]
 
 
 def _annotation(take: Take, start: int, end: int, fps: float, keyword: str) -> Annotation:

@@ -1,0 +1,26 @@
+# One page that shows the run.
+
+
+rule page:
+    input:
+        tables=FLOW.tables(),
+        figures=FLOW.figures(),
+        films=FLOW.films(),
+        searches=FLOW.searches(),
+        metrics="results/metrics.json",
+        skipped=FLOW.of_corpora("skipped.csv"),
+        takes=FLOW.of_corpora("takes.csv"),
+    output:
+        "results/report.html",
+    log:
+        "results/logs/report/page.log",
+    benchmark:
+        "results/benchmarks/report/page.tsv"
+    params:
+        corpora=FLOW.described(),
+        code=code("page.py"),
+    resources:
+        mem_mb=megabytes(600, 5),
+        runtime=minutes(5),
+    script:
+        "../scripts/page.py"

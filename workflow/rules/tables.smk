@@ -1,0 +1,105 @@
+# Scores → the tables of the papers with ours beside theirs; synthesised motion → the figures of [H].
+
+for _table, _experiment in FLOW.filled_tables().items():
+
+    rule:
+        name:
+            _table
+        input:
+            scores=FLOW.scores_of(_experiment),
+        output:
+            report(
+                f"results/{_table}.csv",
+                caption=f"../report/{_table}.rst",
+                category="Tables",
+            ),
+        log:
+            f"results/logs/tables/{_table}.log",
+        benchmark:
+            f"results/benchmarks/tables/{_table}.tsv"
+        params:
+            table=_table,
+            seed=CONFIG.seed,
+            code=code("tables.py"),
+        resources:
+            mem_mb=megabytes(600),
+            runtime=minutes(5),
+        script:
+            "../scripts/tables.py"
+
+
+if CONFIG.tables.string:
+
+    rule label_counts:
+        input:
+            annotations=FLOW.of_string("annotations.tsv"),
+            lengths=FLOW.of_string("synthesis/{string}.csv"),
+        output:
+            report(
+                "results/label_counts.csv",
+                caption="../report/label_counts.rst",
+                category="Tables",
+            ),
+        log:
+            "results/logs/tables/label_counts.log",
+        benchmark:
+            "results/benchmarks/tables/label_counts.tsv"
+        params:
+            code=code("label_counts.py"),
+        resources:
+            mem_mb=megabytes(500),
+            runtime=minutes(5),
+        script:
+            "../scripts/label_counts.py"
+
+    rule curves:
+        input:
+            synthesis=FLOW.of_string("synthesis/{string}.h5"),
+            motion=FLOW.of_shards(FLOW.shown_corpus(), "motion"),
+            annotations=FLOW.of_string("annotations.tsv"),
+        output:
+            fig4=report(
+                "results/fig4.png",
+                caption="../report/fig4.rst",
+                category="Figures",
+            ),
+            fig5=report(
+                "results/fig5.png",
+                caption="../report/fig5.rst",
+                category="Figures",
+            ),
+        log:
+            "results/logs/figures/curves.log",
+        benchmark:
+            "results/benchmarks/figures/curves.tsv"
+        params:
+            simulated=FLOW.simulated(FLOW.shown_corpus()),
+            code=code("curves.py"),
+        resources:
+            mem_mb=megabytes(800, 30),
+            runtime=minutes(5),
+        script:
+            "../scripts/curves.py"
+
+    rule strips:
+        input:
+            FLOW.of_string("synthesis/{string}.h5"),
+        output:
+            report(
+                "results/fig6.png",
+                caption="../report/fig6.rst",
+                category="Figures",
+            ),
+        log:
+            "results/logs/figures/strips.log",
+        benchmark:
+            "results/benchmarks/figures/strips.tsv"
+        params:
+            changes=FLOW.changes(),
+            simulated=FLOW.simulated(FLOW.shown_corpus()),
+            code=code("strips.py"),
+        resources:
+            mem_mb=megabytes(1500),
+            runtime=minutes(10),
+        script:
+            "../scripts/strips.py"
