@@ -60,6 +60,7 @@ class Group(Model):
     rates: dict[str, float] = Field(
         {}, description="Take → frames per second, where single headers are wrong."
     )
+    skip_frames: int = Field(0, ge=0, description="Frames left out at the start, such as a rest pose.")
     unit: float | None = Field(
         None, gt=0, description="Metres per unit of the recordings; absent: found by the size of the body."
     )

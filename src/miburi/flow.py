@@ -23,6 +23,7 @@ _READ = (
     "joints",
     "calibration",
     "columns",
+    "skip_frames",
 )
 _ANNOTATED = ("folder", "keyword", "keywords", "annotations", "labels", "label_unit", "stand_ins")
 

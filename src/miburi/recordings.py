@@ -74,7 +74,10 @@ def read_take(take: Take, group: Group) -> Motion:
     for key in COMPANIONS:
         chosen[key] = filled(chosen[key], take, group)
     chosen["fps"] = group["rates"].get(take.name, group["fps"])
-    return formats.read(take.recording, corpus=SimpleNamespace(**chosen))
+    motion = formats.read(take.recording, corpus=SimpleNamespace(**chosen))
+    if group["skip_frames"] >= len(motion):
+        raise InputError(f"{take.recording}: has {len(motion)} frames, skip_frames is {group['skip_frames']}")
+    return motion[group["skip_frames"] :] if group["skip_frames"] else motion
 
 
 def label_file(take: Take, group: Group) -> str:
