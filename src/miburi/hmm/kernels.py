@@ -89,7 +89,9 @@ def forward(density, offsets, stay, leave):  # type: ignore[no-untyped-def]
         for t in range(start + 1, offsets[k + 1]):
             alpha[t, 0] = alpha[t - 1, 0] + stay[0] + density[t, 0]
             for i in range(1, states):
-                alpha[t, i] = _add(alpha[t - 1, i] + stay[i], alpha[t - 1, i - 1] + leave[i - 1]) + density[t, i]
+                alpha[t, i] = (
+                    _add(alpha[t - 1, i] + stay[i], alpha[t - 1, i - 1] + leave[i - 1]) + density[t, i]
+                )
     return alpha
 
 

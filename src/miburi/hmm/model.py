@@ -127,7 +127,9 @@ class Model:
             return cls(
                 label=str(attrs["label"]),
                 mean=mean,
-                variance=store.get(file, "variance", (n, d)) if full is None else np.einsum("idd->id", full).copy(),
+                variance=store.get(file, "variance", (n, d))
+                if full is None
+                else np.einsum("idd->id", full).copy(),
                 transitions=store.get(file, "transitions", (n, n)),
                 exit=float(store.get(file, "exit", ())),
                 duration_mean=store.get(file, "duration_mean", (n,)),

@@ -42,7 +42,9 @@ def checked_half(half: Sequence[int]) -> Half:
     """Half lengths as two whole numbers of at least 1, or an InputError."""
     values = tuple(half)
     if len(values) != 2 or any(int(v) != v or v < 1 for v in values):
-        raise InputError(f"half lengths of the delta windows are {values}, expected two whole numbers, 1 or more")
+        raise InputError(
+            f"half lengths of the delta windows are {values}, expected two whole numbers, 1 or more"
+        )
     return int(values[0]), int(values[1])
 
 
@@ -53,11 +55,15 @@ def checked_frames(x: ArrayLike, what: str) -> Floats:
     except (TypeError, ValueError):
         raise InputError(f"{what}: found something else than numbers, expected (T, D) of them") from None
     if frames.ndim != 2 or 0 in frames.shape:
-        raise InputError(f"{what}: found an array of shape {frames.shape}, expected (T, D) with a frame at least")
+        raise InputError(
+            f"{what}: found an array of shape {frames.shape}, expected (T, D) with a frame at least"
+        )
     bad = np.flatnonzero(~np.isfinite(frames).all(axis=1))
     if len(bad):
         column = int(np.flatnonzero(~np.isfinite(frames[bad[0]]))[0])
-        raise InputError(f"{what}, frame {bad[0]}, column {column}: found {frames[bad[0], column]}, expected a finite number")
+        raise InputError(
+            f"{what}, frame {bad[0]}, column {column}: found {frames[bad[0], column]}, expected a finite number"
+        )
     return frames
 
 
@@ -94,7 +100,9 @@ def deltas(x: ArrayLike, half: Half = (1, 1)) -> Floats:
     padded = np.concatenate([frames[:1].repeat(longest, 0), frames, frames[-1:].repeat(longest, 0)])
     # pairs of frames: Δ's window is odd, Δ²'s is even and sums to 0, so that a constant gives 0 without rounding
     for i in range(1, half[0] + 1):
-        out[:, m : 2 * m] += delta[half[0] + i] * (_shifted(padded, longest + i, t) - _shifted(padded, longest - i, t))
+        out[:, m : 2 * m] += delta[half[0] + i] * (
+            _shifted(padded, longest + i, t) - _shifted(padded, longest - i, t)
+        )
     for i in range(1, half[1] + 1):
         after, before = _shifted(padded, longest + i, t) - frames, frames - _shifted(padded, longest - i, t)
         out[:, 2 * m :] += square[half[1] + i] * (after - before)
