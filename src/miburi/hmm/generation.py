@@ -30,14 +30,14 @@ def mlpg(mean: ArrayLike, variance: ArrayLike, *, half: Half = (1, 1)) -> Floats
     Raises
     ------
     InputError
-        Shapes do not fit, a mean is not finite, a variance is not above 0, or the Gaussians do not determine a
-        trajectory (as where no static variance is finite).
+        Shapes do not fit, a mean is not finite, a variance is not above 0, or the Gaussians do not determine
+        a trajectory (as where no static variance is finite).
 
     Notes
     -----
-    R x = r with R = W' U⁻¹ W and r = W' U⁻¹ μ, of half-width 2 max(L1, L2), by LDL' for each dimension: O(T M L²)
-    ([H], eqs. 23 to 25). Rows of W that reach outside the frames have no weight; nnmnkwii does the same, of all windows
-    where the longest reaches outside.
+    R x = r with R = W' U⁻¹ W and r = W' U⁻¹ μ, of half-width 2 max(L1, L2), by LDL' for each dimension: O(T M
+    L²) ([H], eqs. 23 to 25). Rows of W that reach outside the frames have no weight; nnmnkwii does the same,
+    of all windows where the longest reaches outside.
     """
     mu = checked_frames(mean, "mlpg: mean")
     v = np.ascontiguousarray(variance, dtype=np.float64)
@@ -50,13 +50,13 @@ def mlpg(mean: ArrayLike, variance: ArrayLike, *, half: Half = (1, 1)) -> Floats
     if not (v >= _LEAST).all():
         frame, column = (int(i) for i in np.argwhere(~(v >= _LEAST))[0])
         raise InputError(
-            f"mlpg: variance, frame {frame}, column {column}: found {v[frame, column]}, expected a number above 0"
+            f"mlpg: variance, frame {frame}, column {column}: found {v[frame, column]}, expected one above 0"
         )
     x, margin = solver.trajectory(mu, v, *windows(half))
     found: Floats = x
     loose = np.flatnonzero(~(margin > 0.0) | ~np.isfinite(found).all(axis=0))
     if len(loose):
         raise InputError(
-            f"mlpg: the Gaussians do not determine feature {loose[0]}; are all of its static variances infinite?"
+            f"mlpg: the Gaussians leave feature {loose[0]} open; are all of its static variances infinite?"
         )
     return found

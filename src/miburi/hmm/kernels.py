@@ -1,8 +1,8 @@
 """Loops of the left-to-right HMM in the log domain: densities, forward-backward, statistics, durations.
 
-Sequences lie end to end in one array; sequence k is `offsets[k]` to `offsets[k + 1]`. `stay` and `leave` are the
-logarithms of each state's two transitions, −inf where there is none; every sequence starts in state 0. With an
-exit, a sequence ends in the last state and leaves it; without, it may end in any state.
+Sequences lie end to end in one array; sequence k is `offsets[k]` to `offsets[k + 1]`. `stay` and `leave` are
+the logarithms of each state's two transitions, −inf where there is none; every sequence starts in state 0.
+With an exit, a sequence ends in the last state and leaves it; without, it may end in any state.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _LOG_ZERO = -746.0  # exp of it is 0
 
 @njit(cache=True, fastmath=_SUMS)
 def log_densities(x, mean, variance):  # type: ignore[no-untyped-def]
-    """Log density of each frame in each state's Gaussian: x (T, D), mean and variance (N, D); returns (T, N)."""
+    """Log density of each frame in each state's Gaussian, (T, N): x (T, D), mean and variance (N, D)."""
     frames, dims = x.shape
     states = len(mean)
     precision = 1.0 / variance
@@ -163,8 +163,8 @@ def expectation(density, offsets, stay, leave, exits):  # type: ignore[no-untype
 def exact_durations(density, offsets, stay, leave, exits):  # type: ignore[no-untyped-def]
     """Sums over χ of 1, d and d² for each state, (3, N), χ from α, β, a_ii and the densities.
 
-    `mean` and `square` are those of the time already spent in a state given the frames so far; they are weighted
-    by the probability of leaving the state after frame t.
+    `mean` and `square` are those of the time already spent in a state given the frames so far; they are
+    weighted by the probability of leaving the state after frame t.
     """
     states = density.shape[1]
     alpha, beta = forward(density, offsets, stay, leave), backward(density, offsets, stay, leave, exits)

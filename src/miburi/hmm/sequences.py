@@ -23,8 +23,8 @@ class Joined(NamedTuple):
 def joined(sequences: Sequence[ArrayLike], states: int, exits: bool, who: str) -> Joined:
     """Check sequences and put them end to end.
 
-    With an exit, a sequence must be as long as there are states to be able to pass through all of them; shorter
-    ones are left out.
+    With an exit, a sequence must be as long as there are states to be able to pass through all of them;
+    shorter ones are left out.
 
     Raises
     ------
@@ -46,8 +46,8 @@ def joined(sequences: Sequence[ArrayLike], states: int, exits: bool, who: str) -
     longest = max(len(x) for x in checked)
     if longest < states:
         raise InputError(
-            f"{who}: the longest of {len(checked)} intervals has {longest} frames, expected {states} or more, "
-            "one for each state; record more of it, or train fewer states"
+            f"{who}: the longest of {len(checked)} intervals has {longest} frames, expected {states} or "
+            "more, one for each state; record more of it, or train fewer states"
         )
     kept = [x for x in checked if len(x) >= states] if exits else checked
     offsets = np.zeros(len(kept) + 1, dtype=np.int64)
@@ -82,5 +82,5 @@ def global_variance(recordings: Sequence[ArrayLike], half: Half | None = (1, 1))
 
 
 def spread(x: Floats) -> Floats:
-    """Variance of each column; exactly 0 where all values are the same, whatever the rounding of their mean."""
+    """Variance of each column; exactly 0 where all values are equal, whatever the rounding of their mean."""
     return np.where(x.min(axis=0) == x.max(axis=0), 0.0, x.var(axis=0))

@@ -14,12 +14,12 @@ _SINGULAR = 1e-13  # a pivot below this share of its diagonal element is roundin
 def trajectory(mean, variance, delta, square):  # type: ignore[no-untyped-def]
     """Solve R x = r with R = W' U⁻¹ W and r = W' U⁻¹ μ for all dimensions at once, by LDL'.
 
-    mean and variance (T, 3 M), delta (2 L1 + 1,) and square (2 L2 + 1,) the coefficients of the windows. Returns x
-    (T, M) and, per dimension, a number that is not positive where the system is singular (M,). Rows of windows that
-    reach outside 1..T are left out.
+    mean and variance (T, 3 M), delta (2 L1 + 1,) and square (2 L2 + 1,) the coefficients of the windows.
+    Returns x (T, M) and, per dimension, a number that is not positive where the system is singular (M,). Rows
+    of windows that reach outside 1..T are left out.
 
-    band[t, k] holds R[t, t − k], then the factor's L[t, t − k], and 1 / D[t] for k = 0. The innermost loop runs over
-    dimensions, which lie beside one another.
+    band[t, k] holds R[t, t − k], then the factor's L[t, t − k], and 1 / D[t] for k = 0. The innermost loop
+    runs over dimensions, which lie beside one another.
     """
     frames, dims = mean.shape[0], mean.shape[1] // 3
     halves = (len(delta) // 2, len(square) // 2)

@@ -34,8 +34,8 @@ def splice(intervals: Mapping[str, Sequence[ArrayLike]], string: str | Sequence[
     Returns
     -------
     Spliced
-        Of each label its interval of median length (the lower median, the first of equal ones), every time that the
-        label appears.
+        Of each label its interval of median length (the lower median, the first of equal ones), every time
+        that the label appears.
 
     Raises
     ------
@@ -72,15 +72,15 @@ def steps(trajectory: ArrayLike) -> Floats:
     Returns
     -------
     (T − 1,)
-        Of the change from frame t to t + 1: |v_t − (v_{t−1} + v_{t+1}) / 2|, v_t = x_{t+1} − x_t; the trajectory stands
-        still before its first frame and after its last. In its unit. A fast but smooth motion has small steps; a
-        jump of h has a step of h.
+        Of the change v_t from frame t to t + 1: |v_t − (v_{t−1} + v_{t+1}) / 2|, at the ends with the one
+        neighbour that there is; in the trajectory's unit. A fast but smooth motion has small steps, a jump
+        of h between two pieces that stand still has a step of h.
     """
     x = checked_frames(trajectory, "steps")
     v = np.diff(x, axis=0)
-    if not len(v):
-        return np.zeros(0)
-    around = np.concatenate([v[:1], v, v[-1:]])
+    if len(v) < 2:
+        return np.zeros(len(v))
+    around = np.concatenate([v[1:2], v, v[-2:-1]])
     jump: Floats = np.abs(v - 0.5 * (around[:-2] + around[2:])).max(axis=1)
     return jump
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -155,7 +156,8 @@ def check_string(
     for place, label in enumerate(found, 1):
         if label not in labels:
             raise InputError(
-                f"string {' '.join(found)!r}: label {place} is {label!r}, known are {', '.join(sorted(labels))}"
+                f"string {' '.join(found)!r}: label {place} is {label!r}, "
+                f"known are {', '.join(sorted(labels))}"
             )
     return found
 
@@ -221,7 +223,7 @@ def _check_together(chain: Sequence[Model]) -> None:
     one = chain[0]
     if one.mean.shape[1] % 3:
         raise InputError(
-            f"model {one.label!r} has {one.mean.shape[1]} features, expected static, Δ and Δ² of each (`deltas`)"
+            f"model {one.label!r} has {one.mean.shape[1]} features, expected static, Δ and Δ² of each"
         )
     for other in chain[1:]:
         for what, a, b in (
@@ -261,13 +263,8 @@ def lengths(
     labels = sorted(set(check_string(string, intervals)))
     found: list[tuple[bool, Form, int]] = []
     for exits in (True, False):
-        for form in FORMS:
-            models = {
-                label: train(intervals[label], exit=exits, durations=form, label=label, **settings)  # type: ignore[arg-type]
-                for label in labels
-            }
+        for form in get_args(Form):
+            options: dict[str, Any] = {**settings, "exit": exits, "durations": form}
+            models = {label: train(intervals[label], label=label, **options) for label in labels}
             found.append((exits, form, total_length(models, string)))
     return found
-
-
-FORMS: tuple[Form, ...] = ("exact", "product")

@@ -29,15 +29,15 @@ def durations(model: Model, sequences: Sequence[ArrayLike], *, form: Form = "exa
     sequences : list of (T_k, D)
         Its intervals.
     form
-        "exact": χ, the probability of being in a state from exactly t0 to t1, from transitions and densities. With an
-        exit, the means add up to the mean length of the intervals.
+        "exact": χ, the probability of being in a state from exactly t0 to t1, from transitions and
+        densities. With an exit, the means add up to the mean length of the intervals.
         "product": χ as the product of state probabilities ([H], eq. 9, its upper bound t1).
 
     Returns
     -------
     mean, variance : (N,)
-        Frames, frames² ([H], eqs. 10 and 11). 0 for a state that no interval reaches, which only a model without an
-        exit can have.
+        Frames, frames² ([H], eqs. 10 and 11). 0 for a state that no interval reaches, which only a model
+        without an exit can have.
 
     Raises
     ------
@@ -110,7 +110,12 @@ def frames_per_state(
         return wanted.astype(np.int64), float(rho)
     if rho != 0.0:
         raise InputError(f"rho is {rho} and length {length}: expected one of the two")
+    if length != int(length):
+        raise InputError(f"length is {length}, expected a whole number of frames")
     _check_length(length)
+    natural, _ = frames_per_state(mean, variance)
+    if natural.sum() == length:
+        return natural, 0.0
     exact, rho = _to_length(mean, variance, length)
     whole = np.maximum(1, np.floor(exact).astype(np.int64))
     # largest remainders, the first of equal ones; sorting is stable
@@ -136,7 +141,7 @@ def _to_length(mean: Floats, variance: Floats, length: int) -> tuple[Floats, flo
     while exact.sum() != length:
         if not moves.any():
             raise InputError(
-                f"length is {length}, expected {exact.sum():.6g}: no state's duration varies in the recordings"
+                f"length is {length}, expected {exact.sum():.6g}: no other duration varies in the recordings"
             )
         rest = length - exact[~moves].sum()
         rho = (rest - mean[moves].sum()) / variance[moves].sum()

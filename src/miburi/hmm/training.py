@@ -54,8 +54,8 @@ def train(
     covariance
         "diagonal" or "full".
     exit
-        The last state has an exit, so that every interval passes through all states (as in HTK). False: an interval
-        may end in any state (as printed).
+        The last state has an exit, so that every interval passes through all states (as in HTK). False: an
+        interval may end in any state (as printed).
     iterations
         Of EM, at most.
     tolerance
@@ -64,7 +64,8 @@ def train(
         No variance falls below this share of the reference variance. Of a full covariance, none does in any
         direction.
     reference : (D,), optional
-        Reference variance of each feature (`global_variance` of the recordings); absent: that of the sequences.
+        Reference variance of each feature (`global_variance` of the recordings); absent: that of the
+        sequences.
     durations
         Form of the state durations: "exact" or "product" (`durations`).
     half
@@ -84,8 +85,8 @@ def train(
 
     Notes
     -----
-    The start is a uniform segmentation: each interval is cut into N pieces of equal length. A floored variance is the
-    likeliest one above the floor, so the likelihood never falls.
+    The start is a uniform segmentation: each interval is cut into N pieces of equal length. A floored
+    variance is the likeliest one above the floor, so the likelihood never falls.
     """
     who = f"label {label!r}" if label else "train"
     _check(who, states, covariance, iterations, tolerance, floor, durations)

@@ -62,7 +62,8 @@ def checked_frames(x: ArrayLike, what: str) -> Floats:
     if len(bad):
         column = int(np.flatnonzero(~np.isfinite(frames[bad[0]]))[0])
         raise InputError(
-            f"{what}, frame {bad[0]}, column {column}: found {frames[bad[0], column]}, expected a finite number"
+            f"{what}, frame {bad[0]}, column {column}: found {frames[bad[0], column]}, "
+            "expected a finite number"
         )
     return frames
 
@@ -98,7 +99,8 @@ def deltas(x: ArrayLike, half: Half = (1, 1)) -> Floats:
     out[:, :m] = frames
     longest = max(half)
     padded = np.concatenate([frames[:1].repeat(longest, 0), frames, frames[-1:].repeat(longest, 0)])
-    # pairs of frames: Δ's window is odd, Δ²'s is even and sums to 0, so that a constant gives 0 without rounding
+    # pairs of frames: Δ's window is odd, Δ²'s is even and sums to 0, so that a constant gives 0 without
+    # rounding
     for i in range(1, half[0] + 1):
         out[:, m : 2 * m] += delta[half[0] + i] * (
             _shifted(padded, longest + i, t) - _shifted(padded, longest - i, t)
@@ -142,7 +144,8 @@ def by_label(
         for start, end, label in intervals:
             if not 0 <= start < end <= len(features):
                 raise InputError(
-                    f"take {number}: the interval {label!r} from {start} to {end} lies outside its {len(features)} frames"
+                    f"take {number}: the interval {label!r} from {start} to {end} "
+                    f"lies outside its {len(features)} frames"
                 )
             cut.setdefault(label, []).append(features[start:end])
     return dict(sorted(cut.items()))
