@@ -14,8 +14,8 @@ from collections.abc import Iterable, Sequence
 
 from miburi import config as settings
 from miburi.errors import InputError
-from miburi.formats import text
-from miburi.recordings import Take, matched
+from miburi.paths import stem, suffix
+from miburi.takes import Take, matched
 
 CMU_TAKES = "config/cmu/takes.tsv"
 CMU_KEYWORDS = "config/cmu/keywords.tsv"
@@ -117,7 +117,7 @@ def _files(where: str, number: int, group: settings.Group, config: settings.Conf
                 f"config: {where}.files: no file in {folder!r} matches {pattern!r}{_hint(group.folder, config)}"
             )
         for path in paths:
-            name = matched(group.take, "take", path, where) or text.stem(path.replace("/", "-"))
+            name = matched(group.take, "take", path, where) or stem(path.replace("/", "-"))
             subject = matched(group.subject, "subject", path, where) or "all"
             full = os.path.join(folder, path)
             found.append(Take(name, subject, full, number, _seconds(full)))
@@ -135,7 +135,7 @@ def _hint(template: str, config: settings.Config) -> str:
 
 def _seconds(path: str) -> float:
     share = _COMPRESSED if path.endswith(".gz") else 1.0
-    return os.path.getsize(path) / (_BYTES.get(text.suffix(path), 30e3) * share)
+    return os.path.getsize(path) / (_BYTES.get(suffix(path), 30e3) * share)
 
 
 def _once(name: str, found: Iterable[Take], once: bool) -> list[Take]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import atexit
+import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from miburi import corpora, job, recordings
+from miburi import corpora, job, takes
 from miburi.config import Config, Corpus, check
 from miburi.errors import InputError
 
@@ -50,12 +52,12 @@ class Flow:
         return self.config.corpora[name]
 
     @cached_property
-    def takes(self) -> dict[str, list[recordings.Take]]:
+    def takes(self) -> dict[str, list[takes.Take]]:
         """Takes of each corpus."""
         return {name: corpora.takes(name, self.config) for name in self.config.corpora}
 
     @cached_property
-    def shards(self) -> dict[str, dict[str, list[recordings.Take]]]:
+    def shards(self) -> dict[str, dict[str, list[takes.Take]]]:
         """Takes of each shard of each corpus."""
         return {name: corpora.shards(found, self.config.shard_seconds) for name, found in self.takes.items()}
 
@@ -120,9 +122,9 @@ class Flow:
         for take in self.shards[corpus][shard]:
             group = groups[take.group]
             found[take.recording] = None
-            for key in recordings.COMPANIONS:
+            for key in takes.COMPANIONS:
                 if group[key]:
-                    found[recordings.filled(group[key], take, group)] = None
+                    found[takes.filled(group[key], take, group)] = None
         return list(found)
 
     def to_read(self, corpus: str, shard: str) -> dict[str, Any]:
@@ -149,7 +151,7 @@ class Flow:
         """Files that say what happens in a corpus: labels of hands, annotations of bodies."""
         groups = self._groups[corpus]
         if self.corpus(corpus).kind == "hand":
-            return [recordings.label_file(t, groups[t.group]) for t in self.takes[corpus]]
+            return [takes.label_file(t, groups[t.group]) for t in self.takes[corpus]]
         return sorted({g[key] for g in groups for key in ("annotations", "keywords") if g[key]})
 
     def per_take(self, corpus: str, shard: str, key: str) -> dict[str, Any]:
@@ -284,6 +286,11 @@ class Flow:
         return name, 0.0, None
 
 
+def one_of(names: Iterable[str]) -> str:
+    """A wildcard's pattern: one of these names, or nothing at all."""
+    return "|".join(re.escape(name) for name in names) or "(?!)"
+
+
 def plan(config: Mapping[str, Any]) -> Flow:
     """Check the config and find the takes, or end the program with one sentence."""
     try:
@@ -301,9 +308,6 @@ def plan(config: Mapping[str, Any]) -> Flow:
 
 def say_last(snakemake_log: str) -> None:
     """Repeat the sentences of failed jobs when the program ends, so that they are the last on the terminal."""
-    import atexit
-    import re
-
     try:
         lines = Path(snakemake_log).read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:

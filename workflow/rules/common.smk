@@ -15,10 +15,12 @@ CONFIG = FLOW.config
 
 
 wildcard_constraints:
-    corpus="[^/]+",
-    shard="all|[01]+(-[01]+)?|-[01]+",
-    experiment="[^/]+",
-    string="[^/]+",
+    corpus=flow.one_of(CONFIG.corpora),
+    shard="[01]*-?[01]+|all",
+    experiment=flow.one_of(CONFIG.experiments),
+    string=flow.one_of(CONFIG.strings),
+    measure="[^/]+",
+    label="[^/]+",
     name="[^/]+",
     query="[^/]+",
 

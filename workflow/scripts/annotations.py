@@ -4,7 +4,8 @@ import csv
 
 from miburi import artefacts, job, store
 from miburi.formats.annotations import write_annotations
-from miburi.recordings import Take, annotate_bodies, annotate_hand
+from miburi.recordings import annotate_bodies, annotate_hand
+from miburi.takes import Take
 
 
 def write_table(path, header, rows):

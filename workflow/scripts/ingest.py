@@ -5,7 +5,8 @@ import logging
 
 from miburi import artefacts, job, store
 from miburi.errors import InputError
-from miburi.recordings import Take, read_take
+from miburi.recordings import read_take
+from miburi.takes import Take
 
 
 def main(snakemake):

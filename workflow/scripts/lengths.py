@@ -14,7 +14,7 @@ def main(snakemake):
     settings["half"] = tuple(settings["half"])
     string = snakemake.params.string["labels"]
     intervals = by_label(takes, settings["half"])
-    reference = global_variance([x for found in intervals.values() for x in found])
+    reference = global_variance([x for x, _ in takes], settings["half"])
     rows = [
         (f"length, {'exit' if exits else 'no exit'}, {form}", frames, "frames")
         for exits, form, frames in lengths(intervals, string, fps=fps, reference=reference, **settings)

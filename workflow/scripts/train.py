@@ -14,7 +14,7 @@ def main(snakemake):
     if label not in intervals:
         known = ", ".join(intervals)
         raise InputError(f"corpus {snakemake.wildcards.corpus!r} has no label {label!r}; it has {known}")
-    reference = global_variance([x for found in intervals.values() for x in found])
+    reference = global_variance([x for x, _ in takes], half)
     model = train(intervals[label], label=label, half=half, fps=fps, reference=reference, **settings)
     model.save(snakemake.output[0], store.sources(*snakemake.input))
 

@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 
 from miburi.errors import InputError
 from miburi.motion import Floats
+from miburi.paths import stem as stem
+from miburi.paths import suffix as suffix
 
 File = str | os.PathLike[str]
 
@@ -75,20 +77,6 @@ def decode(data: bytes) -> str:
         return data.decode()
     except UnicodeDecodeError:
         return data.decode("latin-1")
-
-
-def stem(path: File) -> str:
-    """A file's name without its ending (and without .gz)."""
-    name = Path(path).name
-    if name.lower().endswith(".gz"):
-        name = name[:-3]
-    return name.rsplit(".", 1)[0] if "." in name[1:] else name
-
-
-def suffix(path: File) -> str:
-    """A file's ending in lower case, .gz left out."""
-    name = Path(path).name.lower().removesuffix(".gz")
-    return "." + name.rsplit(".", 1)[1] if "." in name[1:] else ""
 
 
 def line_of(data: bytes, offset: int) -> int:
