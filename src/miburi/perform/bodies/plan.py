@@ -1,0 +1,154 @@
+"""Who performs what in which take: decided before anything moves, with nothing imported that takes time."""
+
+from __future__ import annotations
+
+import random
+from typing import NamedTuple
+
+KEYWORDS = (
+    "right punch",
+    "squats",
+    "wash window 1",
+    "wash window 2",
+    "side twists",
+    "climb 2 steps",
+    "point by right hand",
+    "sit on high stool",
+    "sit and swing legs",
+    "hand on chin",
+    "drink soda",
+)
+"""The keywords of [P]'s experiment 1."""
+
+OTHERS = (
+    "walk",
+    "wave",
+    "throw",
+    "kick",
+    "bow",
+    "pick up",
+    "clap",
+    "reach up",
+    "sit down",
+    "stand up",
+    "go down 2 steps",
+)
+"""What else the performers do; the last three follow from keywords (who sits must rise)."""
+
+PERFORMERS = ("ash", "birch", "cedar", "elm", "fir", "holly")
+"""The performers of the corpus; no person has these names."""
+
+_TAKES = 7  # of each performer
+_SHARE = 4  # performers of each keyword
+_TIMES = 2  # each of them
+
+# Seconds that a motion takes, with its way there and back: first figure once, second for each repetition.
+# Measured over 200 performances each (tests hold it to the truth).
+SECONDS = {
+    "right punch": (1.7, 0.85),
+    "squats": (1.5, 1.75),
+    "wash window 1": (2.0, 1.35),
+    "wash window 2": (2.0, 1.35),
+    "side twists": (1.9, 1.6),
+    "climb 2 steps": (7.0, 0.0),
+    "point by right hand": (0.7, 1.9),
+    "sit on high stool": (6.5, 0.0),
+    "sit and swing legs": (5.2, 1.1),
+    "hand on chin": (4.2, 0.0),
+    "drink soda": (1.8, 2.2),
+    "walk": (1.0, 0.6),
+    "wave": (1.6, 0.65),
+    "throw": (2.6, 0.0),
+    "kick": (0.8, 1.4),
+    "bow": (0.6, 2.2),
+    "pick up": (3.2, 0.0),
+    "clap": (1.4, 0.45),
+    "reach up": (0.6, 2.0),
+}
+_AVERAGE_TEMPO = 1.0
+_REPETITIONS = {
+    "right punch": (2, 4),
+    "squats": (2, 4),
+    "wash window 1": (3, 6),
+    "wash window 2": (3, 6),
+    "side twists": (3, 5),
+    "point by right hand": (1, 3),
+    "sit and swing legs": (4, 8),
+    "drink soda": (1, 2),
+    "walk": (4, 8),
+    "wave": (2, 5),
+    "kick": (1, 2),
+    "bow": (1, 1),
+    "clap": (4, 8),
+    "reach up": (1, 2),
+}
+
+
+class Clip(NamedTuple):
+    """A motion within a take: its keyword, how often it is repeated, and a number that seeds how it is done."""
+
+    keyword: str
+    repetitions: int
+    variant: int
+
+
+class Plan(NamedTuple):
+    """A take to perform; `seconds` is an estimate, `keywords` are in the order in which they come."""
+
+    take: str
+    performer: str
+    seconds: float
+    keywords: tuple[str, ...]
+    clips: tuple[Clip, ...]
+
+
+def plan(seed: int, small: bool = False) -> list[Plan]:
+    """The takes of the corpus.
+
+    Parameters
+    ----------
+    seed
+        The config's seed.
+    small
+        Two performers, each keyword once by each, few repetitions.
+
+    Returns
+    -------
+    list
+        In the order of the takes' names, `{performer}_{nn}`.
+    """
+    rng = random.Random(f"everyday/{seed}/{small}")
+    free = [k for k in OTHERS if k in SECONDS]
+    if small:
+        performers, takes = PERFORMERS[:2], 3
+        wanted = {p: list(KEYWORDS) + rng.sample(free, 2) for p in performers}
+    else:
+        performers, takes = PERFORMERS, _TAKES
+        wanted = {p: list(free) + rng.sample(free, 3) for p in performers}
+        for number, keyword in enumerate(KEYWORDS):
+            for k in range(_SHARE):  # each performer has about as much to do as any other
+                wanted[performers[(number + k) % len(performers)]] += [keyword] * _TIMES
+    return [
+        _take(f"{performer}_{number + 1:02d}", performer, part, rng, small)
+        for performer in performers
+        for number, part in enumerate(_dealt(wanted[performer], takes, rng))
+    ]
+
+
+def _dealt(keywords: list[str], takes: int, rng: random.Random) -> list[list[str]]:
+    """Shuffle keywords into takes of about the same length, so that equal ones never follow each other."""
+    while True:
+        rng.shuffle(keywords)
+        parts = [keywords[k::takes] for k in range(takes)]
+        if all(a != b for part in parts for a, b in zip(part, part[1:], strict=False)):
+            return parts
+
+
+def _take(name: str, performer: str, keywords: list[str], rng: random.Random, small: bool) -> Plan:
+    clips = []
+    for keyword in keywords:
+        low, high = _REPETITIONS.get(keyword, (1, 1))
+        high = min(high, max(low, 3)) if small else high
+        clips.append(Clip(keyword, rng.randint(low, high), rng.randrange(2**31)))
+    seconds = 1.0 + sum(SECONDS[c.keyword][0] + SECONDS[c.keyword][1] * c.repetitions for c in clips)
+    return Plan(name, performer, round(seconds, 1), tuple(keywords), tuple(clips))

@@ -1,0 +1,181 @@
+"""Takes of the corpus: several motions in a row, each as its own score has it, and what was done when."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from miburi import formats, store
+from miburi.errors import InputError
+from miburi.formats.annotations import Annotation, write_annotations
+from miburi.motion import Motion
+from miburi.perform.bodies import actions, gestures, steps
+from miburi.perform.bodies.body import FPS, embody
+from miburi.perform.bodies.people import person
+from miburi.perform.bodies.plan import KEYWORDS, SECONDS, Clip, Plan, plan
+from miburi.perform.bodies.score import Score
+
+Done = list[tuple[str, float, float]]
+
+
+def _single(keyword: str, motion: Callable[[Score, int], gestures.Span]) -> Callable[[Score, int], Done]:
+    return lambda b, times: [(keyword, *motion(b, times))]
+
+
+def _climb(b: Score, times: int) -> Done:
+    done = [("climb 2 steps", *actions.climb(b))]
+    actions.idle(b, b.beat(0.5, 0.3))
+    return [*done, ("go down 2 steps", *actions.descend(b))]
+
+
+def _seated(b: Score, keyword: str, motion: Callable[[], gestures.Span], seat: float, hands: str) -> Done:
+    actions.keep_feet(b)
+    done = [("sit down", *actions.sit(b, seat, hands=hands))]
+    actions.idle(b, b.beat(0.3, 0.3))
+    done.append((keyword, *motion()))
+    return [*done, ("stand up", *actions.stand_up(b))]
+
+
+def _swing(b: Score, times: int) -> Done:
+    keyword = "sit and swing legs"
+    seat = float(b.rng.uniform(0.36, 0.44))
+    return _seated(b, keyword, lambda: actions.swing_legs(b, times), seat, "edge")
+
+
+def _chin(b: Score, times: int) -> Done:
+    keyword = "hand on chin"
+    if b.rng.random() < 0.6:
+        return [(keyword, *gestures.chin(b))]
+    return _seated(b, keyword, lambda: actions.chin_seated(b), b.vary(0.27, 0.01), "knee")
+
+
+MOTIONS: Mapping[str, Callable[[Score, int], Done]] = {
+    "right punch": _single("right punch", gestures.punch),
+    "squats": _single("squats", actions.squats),
+    "wash window 1": _single("wash window 1", lambda b, n: gestures.wash(b, n, False)),
+    "wash window 2": _single("wash window 2", lambda b, n: gestures.wash(b, n, True)),
+    "side twists": _single("side twists", actions.twists),
+    "climb 2 steps": _climb,
+    "point by right hand": _single("point by right hand", gestures.point),
+    "sit on high stool": _single("sit on high stool", lambda b, n: actions.stool(b)),
+    "sit and swing legs": _swing,
+    "hand on chin": _chin,
+    "drink soda": _single("drink soda", gestures.drink),
+    "walk": _single("walk", actions.walk),
+    "wave": _single("wave", gestures.wave),
+    "throw": _single("throw", lambda b, n: gestures.throw(b)),
+    "kick": _single("kick", actions.kick),
+    "bow": _single("bow", lambda b, n: gestures.bow(b)),
+    "pick up": _single("pick up", lambda b, n: actions.pick_up(b)),
+    "clap": _single("clap", gestures.clap),
+    "reach up": _single("reach up", gestures.reach_up),
+}
+"""Keyword → what adds it to a score: (score, repetitions) → [(keyword, start, end) …]."""
+
+
+def compose(entry: Plan, seed: int) -> tuple[Score, Done]:
+    """The score of a take and what is done when, seconds."""
+    who = person(entry.performer, seed)
+    b = Score(who, store.seed(seed, "everyday", entry.take))
+    b.now = float(b.rng.uniform(0.2, 0.5))
+    done: Done = []
+    for number, clip in enumerate(entry.clips):
+        b.rng = store.seed(seed, "everyday", entry.take, number, clip.variant)
+        if number:
+            _between(b)
+        done += MOTIONS[clip.keyword](b, clip.repetitions)
+    b.now += float(b.rng.uniform(0.2, 0.5))
+    return b, done
+
+
+def _between(b: Score) -> None:
+    """What people do between two motions: wait a moment, now and then turn."""
+    actions.idle(b, float(b.rng.uniform(0.15, 0.6)))
+    if b.rng.random() < 0.25:
+        steps.turn_round(b, float(b.rng.choice([-1.0, 1.0]) * b.rng.uniform(25.0, 120.0)))
+
+
+def perform(entry: Plan, seed: int) -> tuple[Motion, list[Annotation]]:
+    """Perform one take.
+
+    Parameters
+    ----------
+    entry
+        One of `plan`'s.
+    seed
+        The config's seed; takes do not depend on each other.
+
+    Returns
+    -------
+    motion
+        60 frames/s, metres.
+    annotations
+        In the order of time; `performer` and `repetitions` as further columns, `recording` says "simulated".
+    """
+    b, done = compose(entry, seed)
+    motion = embody(b, store.seed(seed, "everyday", entry.take, "unrest"), entry.take)
+    more = {"performer": entry.performer, "recording": "simulated"}
+    last = (len(motion) - 1) / FPS
+    rows = [
+        Annotation(entry.take, round(start, 3), round(min(end, last), 3), keyword, more)
+        for keyword, start, end in done
+    ]
+    return motion, rows
+
+
+def imagine(keyword: str, performer_seed: int | str) -> Motion:
+    """A keyword as somebody performs it who is not in the corpus ([P], protocol 2).
+
+    Only the annotated part, from the performer's first to last frame of the keyword.
+
+    Raises
+    ------
+    InputError
+        There is no such keyword.
+    """
+    if keyword not in MOTIONS:
+        raise InputError(f"keyword {keyword!r} is not performed; there are {', '.join(MOTIONS)}")
+    rng = store.seed(performer_seed, "imagine", keyword)
+    low = 3 if keyword in SECONDS and SECONDS[keyword][1] < 1.0 else 2
+    clip = Clip(keyword, int(rng.integers(low, low + 2)), int(rng.integers(2**31)))
+    name = f"imagined_{performer_seed}"
+    entry = Plan(f"{name}_{keyword.replace(' ', '_')}", name, 0.0, (keyword,), (clip,))
+    b, done = compose(entry, 0)
+    motion = embody(b, store.seed(performer_seed, "imagine", keyword, "unrest"), entry.take)
+    start, end = next((s, e) for k, s, e in done if k == keyword)
+    return motion[int(np.floor(start * FPS)) : int(np.ceil(end * FPS)) + 1]
+
+
+def write(
+    folder: str | os.PathLike[str], seed: int, takes: Iterable[str] | None = None, small: bool = False
+) -> list[Annotation]:
+    """Perform and write `{take}.bvh`, and `annotations.tsv` of all that was written.
+
+    Parameters
+    ----------
+    takes
+        Names of those to write; absent: all.
+
+    Raises
+    ------
+    InputError
+        A take is not in the plan.
+    """
+    entries = {p.take: p for p in plan(seed, small)}
+    names = list(entries) if takes is None else sorted(takes)
+    for name in names:
+        if name not in entries:
+            raise InputError(f"take {name!r} is not in the corpus; it has {', '.join(entries)}")
+    rows: list[Annotation] = []
+    for name in names:
+        motion, annotations = perform(entries[name], seed)
+        formats.write(Path(folder) / f"{name}.bvh", motion)
+        rows += annotations
+    write_annotations(Path(folder) / "annotations.tsv", rows)
+    return rows
+
+
+__all__ = ["KEYWORDS", "MOTIONS", "compose", "imagine", "perform", "write"]
