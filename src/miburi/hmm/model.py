@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from miburi import store
 from miburi.errors import InputError
-from miburi.hmm.windows import Half
+from miburi.hmm.windows import Half, checked_half
 
 Floats = NDArray[np.float64]
 Covariance = Literal["diagonal", "full"]
@@ -123,7 +123,11 @@ class Model:
             if absent:
                 raise InputError(f"{path}: the attribute {absent[0]!r} is missing")
             attrs = file.attrs
-            half = [int(v) for v in attrs["windows"]]
+            form = str(attrs["form"])
+            if form not in get_args(Form):
+                raise InputError(
+                    f"{path}: the attribute 'form' is {form!r}, expected {' or '.join(get_args(Form))}"
+                )
             return cls(
                 label=str(attrs["label"]),
                 mean=mean,
@@ -137,8 +141,8 @@ class Model:
                 log_likelihood=store.get(file, "log_likelihood", (None,)),
                 intervals=int(attrs["intervals"]),
                 frames=int(attrs["frames"]),
-                half=(half[0], half[1]),
-                form="product" if attrs["form"] == "product" else "exact",
+                half=checked_half(attrs["windows"]),
+                form="product" if form == "product" else "exact",
                 covariance=full,
                 fps=float(attrs["fps"]) if "fps" in attrs else None,
                 converged=bool(attrs["converged"]),
