@@ -1,5 +1,7 @@
 """EM against enumeration of all paths, against hmmlearn, and at its edges."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -109,12 +111,10 @@ def test_a_floored_covariance_is_the_likeliest_above_the_floor():
 @pytest.mark.parametrize("floor", [0.0, 0.01, 0.5])
 def test_the_likelihood_never_falls(covariance, exits, floor):
     x = movements(np.random.default_rng(1), 8)
-    model = train(
-        x, covariance=covariance, exit=exits, floor=floor, states=4, iterations=30, tolerance=-1
-    )
+    model = train(x, covariance=covariance, exit=exits, floor=floor, states=4, iterations=30, tolerance=-1)
     trace = model.log_likelihood
     assert len(trace) == 31 and not model.converged
-    assert all(same_ends(a, b) for a, b in zip(trace, trace[1:], strict=False))
+    assert all(same_ends(a, b) for a, b in itertools.pairwise(trace))
     assert trace[-1] > trace[0]
     assert np.allclose(model.transitions.sum(axis=1) + np.eye(4)[3] * model.exit, 1.0)
     assert (model.exit > 0) == exits

@@ -59,7 +59,7 @@ def _middle(intervals: Sequence[ArrayLike], label: str) -> ArrayLike:
     if not len(intervals):
         raise InputError(f"label {label!r}: there are no intervals")
     sizes = np.array([len(np.asarray(x)) for x in intervals])
-    return intervals[int(np.argsort(sizes, kind="stable")[(len(sizes) - 1) // 2])]
+    return intervals[int(np.argmax(sizes == np.sort(sizes)[(len(sizes) - 1) // 2]))]
 
 
 def steps(trajectory: ArrayLike) -> Floats:
