@@ -221,7 +221,7 @@ def test_steps_are_their_definition(frames, seed):
 
 def test_splices_step_where_generated_motion_does_not():
     """Recordings that drift: pieces of different times do not meet."""
-    drifting = [(x + 15.0 * np.sin(0.03 * np.arange(len(x)))[:, None], i) for x, i in takes()]
+    drifting = [(x + 25.0 * np.sin(0.05 * np.arange(len(x)))[:, None], i) for x, i in takes()]
     models = {s: train(x, label=s) for s, x in by_label(drifting).items()}
     string = "up hold down up hold down"
     made, cut = synthesize(models, string), splice(by_label(drifting, None), string)
