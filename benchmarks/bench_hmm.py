@@ -4,8 +4,8 @@
 
 Sequences are simulated smooth movements of 48 values with deltas. Training starts every peer from the same
 parameters and runs the same 20 iterations; results are compared before anything is timed. hmmlearn gets the
-exit as one state more, which only a row appended to each sequence can be in: 20 rows and a state more are part
-of its time. Times are the smallest of several runs, peers in turn, one thread, without compilation.
+exit as one state more, which only a row appended to each sequence can be in: 20 rows and a state more are
+part of its time. Times are the smallest of several runs, peers in turn, one thread, without compilation.
 """
 
 from __future__ import annotations
@@ -131,9 +131,7 @@ def bench_training(repeats: int) -> None:
         synthesize(models, " ".join(models))
 
     (seconds,) = fastest([nine], repeats)
-    print(
-        f"nine models of 41 to 20 intervals (janken's sizes) and a string of nine labels: {seconds * 1e3:.1f} ms"
-    )
+    print(f"nine models with janken's numbers of intervals, a string of nine labels: {seconds * 1e3:.1f} ms")
 
 
 def banded(mean: np.ndarray, variance: np.ndarray) -> np.ndarray:
