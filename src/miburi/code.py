@@ -16,7 +16,9 @@ _PACKAGE = Path(__file__).parent
 @cache
 def _graph() -> grimp.ImportGraph:
     cache_dir = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
-    return grimp.build_graph("miburi", exclude_type_checking_imports=True, cache_dir=f"{cache_dir}/miburi/imports")
+    return grimp.build_graph(
+        "miburi", exclude_type_checking_imports=True, cache_dir=f"{cache_dir}/miburi/imports"
+    )
 
 
 def imported(source: str) -> set[str]:

@@ -188,6 +188,15 @@ class Film(Model):
     end_s: float | None = Field(None, gt=0, description="Last second shown; null: the end.")
 
 
+class Search(Model):
+    """Puppet logs that are ranked in a corpus."""
+
+    folder: str = Field(description="Folder of the logs; `{recordings}` is filled in.")
+    simulated: bool = Field(
+        False, description="The logs are a simulator's; those whose first line says so need not be told."
+    )
+
+
 class Experiment(Model):
     """A retrieval experiment of [P] with simulated users."""
 
@@ -246,10 +255,7 @@ class Config(Model):
     render: Render = Field(default_factory=Render, description="Rendering.")
     experiments: dict[Name, Experiment] = Field({}, description="Retrieval experiments.")
     tables: Tables = Field(default_factory=Tables, description="What the papers' tables show.")
-    search: dict[Name, str] = Field(
-        {},
-        description="Corpus → folder of puppet logs that are ranked in results/{corpus}/search/; `{recordings}` is filled in.",
-    )
+    search: dict[Name, Search] = Field({}, description="Corpus → logs ranked in results/{corpus}/search/.")
     search_measure: str = Field(
         "DSPM(PCA)+Jvh", description="Measure of results/{corpus}/search/{query}.csv."
     )

@@ -258,7 +258,7 @@ class Flow:
         """Puppet logs that are ranked in a corpus: name → path. data/puppet serves every corpus."""
         folders = ["data/puppet"]
         if corpus in self.config.search:
-            folders.insert(0, _with_recordings(self.config.search[corpus], self.config.recordings))
+            folders.insert(0, _with_recordings(self.config.search[corpus].folder, self.config.recordings))
         found: dict[str, str] = {}
         for folder in folders:
             for path in sorted([*Path(folder).glob("*.csv"), *Path(folder).glob("*.csv.gz")]):
@@ -268,6 +268,11 @@ class Flow:
     def searches(self) -> list[str]:
         """Rankings of the logs in the folders that the config names."""
         return [f"results/{c}/search/{q}.csv" for c in self.config.search for q in self.logs(c)]
+
+    def simulated_log(self, corpus: str, query: str) -> bool:
+        """Whether the config says that a log is a simulator's."""
+        search = self.config.search.get(corpus)
+        return bool(search and search.simulated) and not self.log_of(corpus, query).startswith("data/puppet")
 
     def log_of(self, corpus: str, query: str) -> str:
         """Path of a puppet log."""
@@ -306,13 +311,10 @@ def plan(config: Mapping[str, Any]) -> Flow:
     return flow
 
 
-def say_last(snakemake_log: str) -> None:
+def say_last(logs: Sequence[str]) -> None:
     """Repeat the sentences of failed jobs when the program ends, so that they are the last on the terminal."""
-    try:
-        lines = Path(snakemake_log).read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        return
-    logs = [m.group(1) for line in lines if (m := re.match(r"\s+log: (.+?) \(check log file", line))]
-    said = list(dict.fromkeys(s for path in logs if (s := job.sentence(path))))
+    lines = [line for log in logs for line in job.lines(log)]
+    failed = [m.group(1) for line in lines if (m := re.match(r"\s+log: (.+?) \(check log file", line))]
+    said = list(dict.fromkeys(s for path in failed if (s := job.sentence(path))))
     if said:
         atexit.register(lambda: print("\n" + "\n".join(said), file=sys.stderr, flush=True))

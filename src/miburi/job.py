@@ -25,7 +25,9 @@ def run(main: Callable[[Any], None], snakemake: Any) -> None:
     log = Path(snakemake.log[0]) if snakemake.log else Path(os.devnull)
     log.parent.mkdir(parents=True, exist_ok=True)
     handler = logging.FileHandler(log, mode="w", encoding="utf-8")
-    logging.basicConfig(level=logging.INFO, format="%(levelname)s: %(message)s", handlers=[handler], force=True)
+    logging.basicConfig(
+        level=logging.INFO, format="%(levelname)s: %(message)s", handlers=[handler], force=True
+    )
     logging.captureWarnings(True)
     try:
         main(snakemake)
@@ -36,7 +38,10 @@ def run(main: Callable[[Any], None], snakemake: Any) -> None:
         _fail(handler, f"{name}{error.strerror or error}")
     except Exception as error:
         handler.stream.write(traceback.format_exc())
-        _fail(handler, f"{type(error).__name__} in {snakemake.rule}: {error} (a defect; the traceback is in {log})")
+        _fail(
+            handler,
+            f"{type(error).__name__} in {snakemake.rule}: {error} (a defect; the traceback is in {log})",
+        )
 
 
 def _fail(handler: logging.FileHandler, sentence: str) -> None:
@@ -49,10 +54,15 @@ def _fail(handler: logging.FileHandler, sentence: str) -> None:
     os._exit(1)
 
 
+def lines(path: str | os.PathLike[str]) -> list[str]:
+    """Lines of a log; none if it cannot be read."""
+    try:
+        return Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return []
+
+
 def sentence(log: str | os.PathLike[str]) -> str | None:
     """The sentence that a failed job left as the last line of its log."""
-    try:
-        lines = Path(log).read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        return None
-    return lines[-1].removeprefix(MARK) if lines and lines[-1].startswith(MARK) else None
+    last = lines(log)[-1:]
+    return last[0].removeprefix(MARK) if last and last[0].startswith(MARK) else None

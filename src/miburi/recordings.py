@@ -31,7 +31,7 @@ def read_take(take: Take, group: Group) -> Motion:
 
 
 def annotate_hand(
-    found: Sequence[Take], parts: Sequence[Group], lengths: Mapping[str, tuple[int, float]]
+    found: Sequence[Take], parts: Mapping[int, Group], lengths: Mapping[str, tuple[int, float]]
 ) -> list[Annotation]:
     """Labels of takes as annotations, with the columns `start_frame` and `end_frame` (exclusive).
 
@@ -62,11 +62,11 @@ def annotate_hand(
 
 
 def annotate_bodies(
-    found: Sequence[Take], parts: Sequence[Group], lengths: Mapping[str, tuple[int, float]]
+    found: Sequence[Take], parts: Mapping[int, Group], lengths: Mapping[str, tuple[int, float]]
 ) -> list[Annotation]:
     """Keywords of takes: of the whole take from its path, or of intervals from annotation files."""
     rows = []
-    for number, group in enumerate(parts):
+    for number, group in sorted(parts.items()):
         mine = {t.name: t for t in found if t.group == number and t.name in lengths}
         for take in mine.values():
             frames, fps = lengths[take.name]

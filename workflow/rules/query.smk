@@ -55,6 +55,7 @@ rule search:
         "results/benchmarks/search/{corpus}/{query}.tsv"
     params:
         measure=CONFIG.search_measure,
+        simulated=lambda wildcards: FLOW.simulated_log(wildcards.corpus, wildcards.query),
         reduction=CONFIG.index.reduction,
         settings=CONFIG.features.model_dump(),
         code=code("search.py"),

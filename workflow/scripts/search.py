@@ -15,7 +15,7 @@ def main(snakemake):
     p, log = snakemake.params, snakemake.input.log
     x = reset_yaw(features(puppet.read(log), **p.settings))
     found = index.rank(x, p.measure, reduction=p.reduction)
-    queries = "simulated" if puppet.is_simulated(log) else "recorded"
+    queries = "simulated" if p.simulated or puppet.is_simulated(log) else "recorded"
     with store.replaced(snakemake.output[0]) as path, open(path, "w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["rank", "take", "start_s", "end_s", "score", "measure", "queries"])
