@@ -10,7 +10,7 @@ import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from miburi.perform.bodies.plan import KEYWORDS, OTHERS, PERFORMERS, Clip, Plan, plan
+from miburi.perform.bodies.programme import KEYWORDS, OTHERS, PERFORMERS, Clip, Plan, plan
 
 if TYPE_CHECKING:
     from miburi.formats.annotations import Annotation

@@ -36,32 +36,31 @@ def squats(b: Score, times: int) -> Span:
     who, k = b.who, b.who.height / 1.75
     steps.stand(b, b.stance("l", 1.5), b.stance("r", 1.5), yaws=(8.0, -8.0))
     arms = b.rng.choice(["ahead", "ahead", "swing", "hips", "head"])
-    depth = b.vary(0.62, 0.09) * who.size
-    depth = min(max(depth, 0.4), 0.82) * who.thigh
+    depth = min(max(b.vary(1.1, 0.15) * who.size, 0.7), 1.4) * who.thigh
     t = b.now
     if arms in ("hips", "head"):
-        ready = b.beat(0.5)
+        ready = b.beat(0.5 if arms == "hips" else 0.9)
         for side in SIDES:
             if arms == "hips":
                 b.reach(side, t, t + ready, (0.12, 0.1, 0.06), "hip")
                 b.move(f"{side}_swivel", t, t + ready, (25.0,))
             else:
-                b.reach(side, t, t + 0.5 * ready, (0.5, 0.25, 0.45), arc=0.05)
+                b.reach(side, t, t + 0.5 * ready, (0.45, 0.1, 0.5), arc=0.05)
                 b.reach(side, t + 0.5 * ready, t + 1.2 * ready, (0.09, 0.02, -0.06), "head", arc=0.0)
                 b.move(f"{side}_swivel", t, t + ready, (20.0,))
         t += ready
     start = t
     for _ in range(times):
-        down, hold, up = b.beat(0.75), b.beat(0.1, 0.4), b.beat(0.7)
+        down, hold, up = b.beat(0.85), b.beat(0.1, 0.4), b.beat(0.8)
         deep = depth * b.vary(1.0, 0.06)
         share = deep / who.thigh
-        b.pelvis(t, t + down, 0.0, -deep, -0.17 * k * share)
-        b.turn(t, t + down, 0.0, 30.0 * share, 0.0)
-        b.trunk(t, t + down, 22.0 * share)
-        b.look(t, t + down, -30.0 * share)
+        b.pelvis(t, t + down, 0.0, -deep, -0.13 * k * share)
+        b.turn(t, t + down, 0.0, 17.0 * share, 0.0)
+        b.trunk(t, t + down, 15.0 * share)
+        b.look(t, t + down, -18.0 * share)
         if arms in ("ahead", "swing"):
             for side in SIDES:
-                b.reach(side, t, t + down, (-0.05, 0.25 * share - 0.08, 0.88), arc=0.05)
+                b.reach(side, t, t + down, (-0.05, 0.3 * share - 0.1, 0.88), arc=0.05)
         t += down + hold
         b.rise(t, t + up)
         if arms == "swing":
@@ -71,15 +70,20 @@ def squats(b: Score, times: int) -> Span:
                 b.reach(side, t, t + up, (0.0, b.vary(-0.25, 0.1), 0.85), arc=0.0)
         t += up + abs(b.vary(0.1, 0.1))
     b.now = t
-    b.relax(t, t + b.beat(0.6))
+    sink = b.beat(0.6 if arms != "head" else 1.0)
+    if arms == "head":
+        for side in SIDES:
+            b.reach(side, t, t + 0.5 * sink, (0.45, 0.1, 0.5), arc=0.0)
+        t += 0.5 * sink
+    b.relax(t, t + sink)
     steps.home(b)
     return start, t
 
 
 def twists(b: Score, times: int) -> Span:
-    """The trunk twists from side to side over feet that stand; arms out, bent before the chest, or at the hips."""
+    """The trunk twists from side to side over feet that stand; arms out, bent, or hands at the hips."""
     steps.stand(b, b.stance("l", 1.6), b.stance("r", 1.6), yaws=(4.0, -4.0))
-    arms = b.rng.choice(["out", "bent", "bent", "hips"])
+    arms = b.rng.choice(["out", "out", "bent", "hips"])
     t = b.now
     ready = b.beat(0.6)
     for side in SIDES:
@@ -95,10 +99,11 @@ def twists(b: Score, times: int) -> Span:
     start = t - 0.15
     side = 1.0 if b.rng.random() < 0.5 else -1.0
     size = b.who.size
+    lean, stoop = float(b.rng.uniform(-2.0, 13.0)), float(b.rng.uniform(0.0, 12.0))
     for number in range(2 * times):
         span = b.beat(0.72) * (0.7 if number == 0 else 1.0)
         b.turn(t, t + span, 24.0 * side * size, 0.0, 0.0)
-        b.trunk(t + 0.03, t + span + 0.04, 2.0, 0.0, b.vary(40.0, 3.0) * side * size)
+        b.trunk(t + 0.03, t + span + 0.04, stoop, lean * side, b.vary(40.0, 3.0) * side * size)
         b.look(t + 0.02, t + span + 0.06, 0.0, b.vary(15.0, 4.0) * side)
         b.pelvis(t, t + span, -0.02 * side, -0.012, 0.0)
         t += span + 0.04
@@ -161,7 +166,7 @@ def kick(b: Score, times: int) -> Span:
 
 def pick_up(b: Score) -> Span:
     """Something is picked up from the floor, with bent knees or a bent back."""
-    who, k = b.who, b.who.height / 1.75
+    k = b.who.height / 1.75
     side = b.hand
     sign = b.out(side)
     t = b.now
@@ -172,7 +177,7 @@ def pick_up(b: Score) -> Span:
     b.pelvis(t, t + go, sign * 0.02, -drop, -(0.16 + 0.05 * bend) * k)
     b.turn(t, t + go, -sign * 6.0, 32.0 + 18.0 * bend, 0.0)
     b.trunk(t, t + go, 34.0 + 14.0 * bend, 0.0, -sign * 10.0)
-    b.look(t - 0.1, t + 0.8 * go, 4.0)
+    b.look(t - 0.1, t + 0.8 * go, -10.0)
     b.reach(side, t, t + go, (sign * 0.1 * k, 0.16 * k, 0.36 * k), "stage")
     b.reach(b.other(side), t, t + go, (0.06, 0.10, -0.06), "knee")
     t += go + hold
@@ -209,7 +214,7 @@ def sit(b: Score, seat: float, *, rung: float = 0.0, hands: str = "knee") -> Spa
     half = t + 0.55 * go
     b.look(t - 0.1, t + 0.3 * go, 10.0, b.vary(0.0, 18.0))
     b.turn(t, half, 0.0, 16.0 - 30.0 * min(seat - 0.3, 0.2), 0.0)
-    b.trunk(t, half, 24.0 - 60.0 * max(0.0, seat - 0.28))
+    b.trunk(t, half, 30.0 - 60.0 * max(0.0, seat - 0.28))
     b.pelvis(t, t + go, 0.0, root, back)
     b.look(half, t + 1.2 * go, 3.0)
     b.turn(half, t + 1.2 * go, 0.0, -8.0, 0.0)
@@ -256,7 +261,7 @@ def stand_up(b: Score) -> Span:
             b.move(f"{side}_foot", t, t + down, foot)
             b.move(f"{side}_sole", t, t + down, (b.heading + b.out(side) * b.who.toe_out, 0.0))
             b.air[side].append((opened, t + down))
-    if b.air["l"] and b.air["l"][-1][1] > t or b.air["r"] and b.air["r"][-1][1] > t:
+    if any(b.air[side] and b.air[side][-1][1] > t for side in SIDES):
         t += 0.42
     b.trunk(t, t + 0.45 * go, 22.0)
     b.turn(t, t + 0.45 * go, 0.0, 12.0, 0.0)
@@ -273,11 +278,11 @@ def stand_up(b: Score) -> Span:
 def stool(b: Score) -> Span:
     """Onto a high stool, a look around, and down again."""
     keep_feet(b)
-    seat = b.vary(0.425, 0.012)
+    seat = b.vary(0.405, 0.015)
     start, _ = sit(
         b, seat, rung=0.2 if b.rng.random() < 0.6 else 0.0, hands="knee" if b.rng.random() < 0.7 else "edge"
     )
-    idle(b, b.beat(1.3, 0.25))
+    idle(b, b.beat(1.8, 0.5))
     _, end = stand_up(b)
     return start, end
 
@@ -326,10 +331,18 @@ def swing_legs(b: Score, times: int) -> Span:
             begin, end = max(t + late, b.last(foot).t), t + late + span
             b.move(foot, begin, 0.5 * (begin + end), place(middle), "hip", through=True)
             b.move(foot, 0.5 * (begin + end), end, place(angle), "hip")
-            b.move(f"{side}_sole", begin, end, (b.heading + b.out(side) * 5.0, 24.0 - 0.7 * angle))
+            b.move(f"{side}_sole", begin, end, (b.heading + b.out(side) * 5.0, 22.0 - 0.7 * angle))
         if b.rng.random() < 0.4:
             b.look(t, t + span, b.vary(6.0, 6.0), b.vary(0.0, 14.0))
-        b.turn(t, t + span, b.vary(0.0, 1.5), -8.0 + b.vary(0.0, 1.5), 0.0)
+        rock = 3.0 if number % 2 else -3.0  # the trunk answers the legs
+        b.turn(t, t + span, 0.0 if together else rock, -8.0 + b.vary(rock if together else 0.0, 1.0), 0.0)
+        b.trunk(
+            t,
+            t + span,
+            b.vary(5.0 - (rock if together else 0.0), 1.5),
+            b.vary(0.0, 1.5),
+            0.0 if together else -rock,
+        )
         t += span
     b.now = t + 0.05
     return start, b.now

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 from scipy.spatial.transform import Rotation
 from scipy.special import expit
 
@@ -41,7 +41,7 @@ def _apply(frames: Floats, vectors: Floats) -> Floats:
 
 
 def _speeds(keys: list[Key]) -> Floats:
-    """Speed at each key: none, or where it is passed through, of the way from its neighbour to its neighbour."""
+    """Speed at each key: none, or where it is passed through, of the way between its neighbours."""
     values = np.array([k.value for k in keys])
     speeds = np.zeros_like(values)
     for i in range(1, len(keys) - 1):
@@ -127,6 +127,13 @@ def _lower(a: Floats, b: Floats, soft: float = 0.006) -> Floats:
     return -soft * np.logaddexp(-a / soft, -b / soft)
 
 
+def _ahead(dip: Floats, seconds: float = 0.1) -> Floats:
+    """At least as low as a dip (T,), and in time: the body sinks before its foot lands, not when it does."""
+    reach = round(seconds * FPS)
+    widest = maximum_filter1d(dip, 2 * reach + 1, mode="nearest")
+    return gaussian_filter1d(widest, 0.4 * reach, radius=reach, mode="nearest")
+
+
 def _standing(air: list[tuple[float, float]], t: Floats, ramp: float = 0.09) -> Floats:
     """1 while a foot stands, 0 while it is in the air, smooth in between (T,)."""
     weight = np.ones_like(t)
@@ -184,7 +191,7 @@ def _arm(
 ) -> tuple[Floats, Floats]:
     """Frames (T, 3, 3) of upper arm and forearm."""
     mirror = 1.0 if side == "l" else -1.0
-    direction, along, beside = _bent(who.upper_arm, who.forearm, shoulder, hand, 0.94)
+    direction, along, beside = _bent(who.upper_arm, who.forearm, shoulder, hand, 0.965)
     seen = np.einsum("tji,tj->ti", chest, direction) * [mirror, 1.0, 1.0]
     towards = unit(np.array([a for a, _ in _ELBOWS]))
     weight = np.exp(3.5 * seen @ towards.T)
@@ -219,8 +226,8 @@ def _clear(who: Person, chest: tuple[Floats, Floats], hand: Floats) -> Floats:
 def embody(b: Score, rng: np.random.Generator, name: str = "") -> Motion:
     """The motion of a score.
 
-    Slow unrest goes onto pelvis, trunk, head and free hands; a fifth of a millimetre of jitter, as of a marker-based
-    capture, onto what the inverse kinematics follows.
+    Slow unrest goes onto pelvis, trunk, head and free hands; a fifth of a millimetre of jitter, as of a
+    marker-based capture, onto what the inverse kinematics follows.
     """
     who = b.who
     n = int(np.ceil(b.now * FPS)) + 1
@@ -253,9 +260,9 @@ def embody(b: Score, rng: np.random.Generator, name: str = "") -> Motion:
         level = np.linalg.norm((pelvis + drop - ankles[s])[:, [0, 2]], axis=1)
         height = np.sqrt(np.maximum((REACH * leg) ** 2 - level**2, (0.3 * leg) ** 2))
         limit = _lower(limit, ankles[s][:, 1] + height - drop[:, 1] + 1.5 * free[s])
-    pelvis[:, 1] = _lower(pelvis[:, 1], limit)
+    pelvis[:, 1] -= _ahead(pelvis[:, 1] - _lower(pelvis[:, 1], limit))
     jitter = 2e-4
-    pelvis = pelvis + jitter * _unrest(rng, n, 3, 7.0)
+    pelvis = pelvis + (jitter * _unrest(rng, n, 3, 7.0) + 0.0007 * who.tremor * _unrest(rng, n, 3, 2.5))
 
     world: dict[str, Floats] = {"Hips": hips}
     skeleton = people.skeleton(who)
@@ -270,7 +277,6 @@ def embody(b: Score, rng: np.random.Generator, name: str = "") -> Motion:
         world[joint] = world[parent] @ _turn(
             "YXZ", share * trunk[:, 2], share * trunk[:, 0], share * trunk[:, 1]
         )
-    chest = world["Spine2"]
     for parent, joint, share in (("Spine2", "Neck", 0.4), ("Neck", "Head", 0.6)):
         at[joint] = at[parent] + _apply(world[parent], offsets[_J[joint]])
         world[joint] = world[parent] @ _turn(

@@ -43,9 +43,10 @@ def punch(b: Score, times: int) -> Span:
             hit = (0.16 * k, high, hit[2])
         b.reach("r", t, t + back, (-0.06, 0.02 if kind != "upper" else -0.25, 0.28), arc=0.0)
         b.turn(t, t + back, -33.0, 4.0, 0.0)
+        b.trunk(t, t + back, 7.0, 0.0, -4.0)
         t += back
         b.turn(t - 0.04, t + 0.9 * out, 8.0 * who.size, 5.0, 0.0)
-        b.trunk(t - 0.02, t + out, 9.0, 0.0, 26.0 * who.size)
+        b.trunk(t - 0.02, t + out, 9.0, 0.0, 34.0 * who.size)
         b.look(t, t + out, -8.0, -22.0)
         b.pelvis(t - 0.04, t + out, 0.02, low - 0.01, 0.07 * k)
         b.move("r_sole", t - 0.04, t + out, (b.heading - 14.0, 24.0))
@@ -74,9 +75,12 @@ def punch(b: Score, times: int) -> Span:
 def wash(b: Score, times: int, up_and_down: bool) -> Span:
     """A cloth in the right hand on a window: strokes from side to side (1), up and down or in circles (2)."""
     who, k = b.who, b.who.height / 1.75
-    pane = b.vary(0.54, 0.03) * k
+    pane = b.vary(0.56, 0.03) * k
     left_edge, right_edge = 0.20 * k * who.size, -0.52 * k * who.size
     top, bottom = 0.98 * who.height * b.vary(1.0, 0.02), 0.62 * who.height
+    if b.rng.random() < 0.5:
+        wide, apart = b.rng.uniform(1.2, 2.0), b.rng.normal(0.0, 0.06) * k
+        stand(b, b.stance("l", wide, apart), b.stance("r", wide, -apart))
     t = b.now
     ready = b.beat(0.65)
     circles = up_and_down and b.rng.random() < 0.4
@@ -92,17 +96,18 @@ def wash(b: Score, times: int, up_and_down: bool) -> Span:
     elif other == "hip":
         b.reach("l", t, t + ready, (0.14, 0.12, 0.05), "hip")
         b.move("l_swivel", t, t + ready, (30.0,))
-    b.trunk(t, t + ready, 5.0, 0.0, 8.0)
+    lean = abs(b.vary(11.0, 5.0))
+    b.trunk(t, t + ready, lean, 0.0, 8.0)
     b.pelvis(t, t + ready, -0.02, -0.01, 0.03)
     start = t
     t += ready
-    stroke = b.beat(0.62)
+    stroke = b.beat(0.76)
 
     def follow(s: float, e: float, x: float, y: float) -> None:
         side = (x - 0.5 * (left_edge + right_edge)) / (left_edge - right_edge)  # −0.5 … 0.5
         b.pelvis(s, e, 0.09 * side * k, -0.01 - 0.05 * max(0.0, 0.75 - y / who.height), 0.03)
         b.turn(s, e, 12.0 * side, 2.0 + 22.0 * max(0.0, 0.72 - y / who.height), 0.0)
-        b.trunk(s, e, 4.0 + 30.0 * max(0.0, 0.8 - y / who.height), 6.0 * side, 22.0 * side)
+        b.trunk(s, e, lean + 30.0 * max(0.0, 0.8 - y / who.height), 6.0 * side, 22.0 * side)
         b.look(s, e, -50.0 * (y / who.height - 0.9), 20.0 * side)
 
     if circles:
@@ -137,7 +142,8 @@ def wash(b: Score, times: int, up_and_down: bool) -> Span:
     b.now = t
     b.relax(t, t + b.beat(0.7))
     b.rise(t, t + b.beat(0.6))
-    b.now = t + 0.55
+    b.now = t + 0.4
+    home(b)
     return start, t
 
 
@@ -316,7 +322,8 @@ def clap(b: Score, times: int) -> Span:
 
 
 def throw(b: Score) -> Span:
-    """An overarm throw: the hand goes back and up, the other foot steps out, the trunk unwinds, the arm follows."""
+    """An overarm throw: the hand goes back and up, the other foot steps out, the trunk unwinds, the arm
+    follows."""
     side, k = b.hand, b.who.height / 1.75
     sign, other = b.out(b.hand), b.other(b.hand)
     t = b.now
@@ -326,20 +333,21 @@ def throw(b: Score) -> Span:
     b.move(f"{side}_swivel", t, t + wind, (25.0,))
     b.reach(other, t, t + wind, (-0.05, -0.05, 0.75), arc=0.06)
     b.turn(t, t + wind, sign * 24.0, -2.0, 0.0)
-    b.trunk(t, t + wind, -5.0, sign * 4.0, sign * 30.0)
+    b.trunk(t, t + wind, -5.0, sign * 4.0, sign * 24.0)
     b.look(t, t + wind, -4.0, -sign * 40.0)
-    b.pelvis(t, t + wind, sign * 0.06, -0.01, -0.05)
+    b.pelvis(t, t + 0.6 * wind, sign * 0.05, -0.015, -0.03)
+    b.pelvis(t + 0.6 * wind, t + wind, sign * 0.02, -0.05, 0.06 * k)
     step = b.local(b.last(f"{other}_foot").value)
     place = b.world(step[0], 0.0, step[2] + 0.34 * k * b.who.size)
     swing(
         b, other, t + 0.55 * wind, t + wind + 0.1, place, b.heading + b.out(other) * b.who.toe_out, lift=0.07
     )
     t += wind + 0.02
-    go = b.beat(0.3)
-    b.turn(t - 0.05, t + 0.8 * go, -sign * 18.0, 7.0, 0.0)
-    b.trunk(t - 0.02, t + go, 16.0, -sign * 3.0, -sign * 24.0)
+    go = b.beat(0.36)
+    b.turn(t - 0.15, t + 0.8 * go, -sign * 14.0, 7.0, 0.0)
+    b.trunk(t - 0.06, t + 1.2 * go, 16.0, -sign * 3.0, -sign * 18.0)
     b.look(t, t + go, -14.0, sign * 22.0)
-    b.pelvis(t - 0.2, t + 1.6 * go, -sign * 0.02, -0.035, 0.14 * k)
+    b.pelvis(t, t + 1.6 * go, -sign * 0.02, -0.05, 0.17 * k)
     b.move(f"{side}_sole", t, t + go + 0.1, (b.heading + sign * 4.0, 32.0))
     b.reach(side, t, t + 0.65 * go, (0.18, 0.55, 0.6), through=True)
     b.reach(side, t + 0.65 * go, t + 1.7 * go, (-0.35, -0.5, 0.6))
@@ -384,7 +392,7 @@ def reach_up(b: Score, times: int) -> Span:
     both = b.rng.random() < 0.4
     side = b.hand
     for _ in range(times):
-        go, hold, back = b.beat(0.75), b.beat(0.45, 0.3), b.beat(0.75)
+        go, hold, back = b.beat(1.0), b.beat(0.45, 0.3), b.beat(0.95)
         tip = b.rng.random() < 0.6
         lean = 0.0 if both else b.out(side)
         for s in "lr":

@@ -34,8 +34,8 @@ _HEEL_BACK, _BALL_AHEAD, _TOE = 0.037, 0.075, 0.04
 class Person(NamedTuple):
     """A performer. Lengths in metres, angles in degrees.
 
-    `tempo` multiplies speeds, `size` amplitudes; `stoop` bends the trunk forward, `carry` holds the elbows away,
-    `sway` and `tremor` scale slow and fast unrest.
+    `tempo` multiplies speeds, `size` amplitudes; `stoop` bends the trunk forward, `carry` holds the elbows
+    away, `sway` and `tremor` scale slow and fast unrest.
     """
 
     name: str

@@ -1,9 +1,9 @@
 """A score: where pelvis, trunk, head, hands and feet are at which time, as a choreographer writes it down.
 
-Between two keys every track makes a minimum-jerk pass (Flash and Hogan 1985); a key that is passed `through`
-keeps the speed of its neighbourhood. A hand's key may lie in the frame of its own shoulder, the head, a knee or
-the hip, or stand still in the world; on its way between keys of different frames it follows both, so that a hand
-finds the mouth of a head that nods.
+Between two keys every track makes a minimum-jerk pass (Flash and Hogan 1985); a key that is passed
+`through` keeps the speed of its neighbourhood. A hand's key may lie in the frame of its own shoulder, the
+head, a knee or the hip, or stand still in the world; on its way between keys of different frames it follows
+both, so that a hand finds the mouth of a head that nods.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ REST: dict[str, Vector] = {
 class Score:
     """What one performer does in one take, in the order of time.
 
-    `now` is the time reached; `x`, `z` and `heading` (degrees, to the left) are where the performer's own frame
-    stands (x to the left, y up, z ahead), `floor` the height under the feet.
+    `now` is the time reached; `x`, `z` and `heading` (degrees, to the left) are where the performer's own
+    frame stands (x to the left, y up, z ahead), `floor` the height under the feet.
     """
 
     who: Person
@@ -92,7 +92,7 @@ class Score:
     @property
     def hand_rest(self) -> Vector:
         """A hanging hand (outwards, up, ahead of its shoulder, in arm lengths)."""
-        return (0.09 + self.who.carry, -0.965 + 0.3 * self.who.carry, 0.1)
+        return (0.08 + self.who.carry, -0.985 + 0.25 * self.who.carry, 0.09)
 
     @staticmethod
     def out(side: str) -> float:
@@ -233,8 +233,8 @@ class Score:
         """Bring a hand to a place; by itself it swings a little outwards and forwards on a long way.
 
         Frames: "arm" (outwards, up, ahead of its own shoulder, arm lengths), "head", "hip", "knee" (outwards,
-        up, ahead of the head's, own hip's or own knee's joint, metres for a height of 1.75 m), "stage" (left, up,
-        ahead in the performer's own frame now, metres).
+        up, ahead of the head's, own hip's or own knee's joint, metres for a height of 1.75 m), "stage" (left,
+        up, ahead in the performer's own frame now, metres).
         """
         if frame == "stage":
             value, frame = self.world(value[0], value[1], value[2]), "world"

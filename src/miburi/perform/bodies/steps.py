@@ -68,16 +68,20 @@ def stand(
             continue
         other = b.local(b.last(f"{b.other(side)}_foot").value)
         t = b.now
-        span = b.beat(seconds)
+        span = b.beat(seconds * (0.85 + 1.2 * min(math.dist(foot, places[side]), 0.5)))
         here = b.local(b.last("pelvis").value)
         b.pelvis(
-            t, t + 0.4 * span, 0.35 * here[0] + 0.65 * other[0], -0.006, 0.5 * (here[2] + _root(b, other))
+            t - 0.08,
+            t + 0.5 * span,
+            0.35 * here[0] + 0.65 * other[0],
+            -0.006,
+            0.5 * (here[2] + _root(b, other)),
         )
-        swing(b, side, t + 0.22 * span, t + span, places[side], yaw[side], lift=0.035)
+        swing(b, side, t + 0.3 * span, t + span, places[side], yaw[side], lift=0.035)
         target = b.local(places[side])
         b.pelvis(
-            t + 0.4 * span,
-            t + 1.1 * span,
+            t + 0.5 * span,
+            t + 1.2 * span,
             0.5 * (other[0] + target[0]),
             0.0,
             0.5 * (_root(b, other) + _root(b, target)),
@@ -94,7 +98,9 @@ def home(b: Score) -> None:
     """Step back to standing at ease, around the middle of where the feet are."""
     b.settle()
     stand(b, b.stance("l"), b.stance("r"))
-    b.rise(b.now - 0.15, b.now + b.beat(0.35))
+    end = b.now + b.beat(0.35)
+    b.rise(b.now - 0.15, end)
+    b.now = end - 0.05
 
 
 def turn_round(b: Score, degrees: float) -> None:
@@ -186,7 +192,7 @@ def walk(
         other = b.out(b.other(side)) * 0.022
         if climbing:
             # over the foot that carries, which straightens; going down, it bends until the other one lands
-            low = 0.0 if closing else -up - 0.005 - (0.65 * abs(up) if up < 0 else 0.0)
+            low = 0.0 if closing else -up - 0.005 - (0.85 * abs(up) if up < 0 else 0.0)
             b.pelvis(
                 t - 0.05 * span,
                 t + 0.9 * span,
@@ -217,7 +223,7 @@ def walk(
 def _arms(b: Score, ahead: str, start: float, end: float, size: float) -> None:
     """Arms swing against the legs: the hand of the side whose foot goes ahead goes back."""
     out, up, front = b.hand_rest
-    far = 0.30 * b.who.size * size
+    far = 0.36 * b.who.size * size
     for side in SIDES:
         sign = -0.75 if side == ahead else 1.0
         value = (out, up + 0.12 * far + (0.06 if sign > 0 else 0.0) * size, front + sign * far)

@@ -15,7 +15,7 @@ from miburi.motion import Motion
 from miburi.perform.bodies import actions, gestures, steps
 from miburi.perform.bodies.body import FPS, embody
 from miburi.perform.bodies.people import person
-from miburi.perform.bodies.plan import KEYWORDS, SECONDS, Clip, Plan, plan
+from miburi.perform.bodies.programme import KEYWORDS, REPETITIONS, Clip, Plan, plan
 from miburi.perform.bodies.score import Score
 
 Done = list[tuple[str, float, float]]
@@ -139,8 +139,8 @@ def imagine(keyword: str, performer_seed: int | str) -> Motion:
     if keyword not in MOTIONS:
         raise InputError(f"keyword {keyword!r} is not performed; there are {', '.join(MOTIONS)}")
     rng = store.seed(performer_seed, "imagine", keyword)
-    low = 3 if keyword in SECONDS and SECONDS[keyword][1] < 1.0 else 2
-    clip = Clip(keyword, int(rng.integers(low, low + 2)), int(rng.integers(2**31)))
+    low, high = REPETITIONS.get(keyword, (1, 1))
+    clip = Clip(keyword, int(rng.integers(low, high + 1)), int(rng.integers(2**31)))
     name = f"imagined_{performer_seed}"
     entry = Plan(f"{name}_{keyword.replace(' ', '_')}", name, 0.0, (keyword,), (clip,))
     b, done = compose(entry, 0)
