@@ -190,6 +190,7 @@ def test_splices_are_intervals_of_median_length(recorded):
         sizes = [len(x) for x in raw[label]]
         assert len(piece) == sorted(sizes)[(len(sizes) - 1) // 2]
         assert np.array_equal(piece, raw[label][sizes.index(len(piece))])  # the first of equal ones
+    assert len(splice({"a": [np.zeros((n, 1)) for n in (7, 3)]}, "a").trajectory) == 3  # the lower median
     with pytest.raises(InputError, match="label 1 is 'left'"):
         splice(raw, "left")
     with pytest.raises(InputError, match="label 'up': there are no intervals"):

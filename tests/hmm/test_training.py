@@ -92,7 +92,7 @@ def test_a_floored_covariance_is_the_likeliest_above_the_floor():
     floors = np.array([0.4, 0.2, 0.3])
     start = np.zeros((1, 3)), np.ones((1, 3, 3))
     _, (found,) = reestimate(x, np.ones((30, 1)), *start, floors)
-    assert np.linalg.eigvalsh(found - np.diag(floors)).min() > -1e-12
+    assert abs(np.linalg.eigvalsh(found - np.diag(floors)).min()) < 1e-12  # it touches the floor
     sample = np.cov(x.T, ddof=0)
     assert np.linalg.eigvalsh(sample - np.diag(floors)).min() < 0  # the floor is at work
 
@@ -126,6 +126,21 @@ def test_em_stops_when_it_has_converged():
     assert model.converged and len(model.log_likelihood) < 100
     gains = np.diff(model.log_likelihood) / model.frames
     assert gains[-1] < 1e-3 and (gains[:-1] >= 1e-3).all()
+
+
+@pytest.mark.parametrize("covariance", ["diagonal", "full"])
+@pytest.mark.parametrize("exits", [True, False])
+def test_the_last_likelihood_is_that_of_the_model(covariance, exits):
+    """By the twin, from what the model's file will hold."""
+    x = [s[:, :2] for s in movements(np.random.default_rng(4), 3, longest=8, dims=2)]
+    model = train(x, covariance=covariance, exit=exits, iterations=3, tolerance=-1)
+    variance = model.variance if model.covariance is None else model.covariance
+    densities = [naive.log_densities(s, model.mean, variance) for s in x]
+    with np.errstate(divide="ignore"):
+        stay = np.log(np.diag(model.transitions))
+        leave = np.log([*np.diag(model.transitions, 1), model.exit])
+    assert np.isclose(model.log_likelihood[-1], naive.expectation(densities, stay, leave, exits)[3])
+    assert np.array_equal(model.logs, [stay, leave])
 
 
 def test_the_start_is_the_uniform_segmentation():
