@@ -1,0 +1,67 @@
+"""A change re-runs what depends on it and nothing else, seen by `snakemake -n`."""
+
+from __future__ import annotations
+
+from tests.workflow.conftest import Project
+
+AFTER_RANK = {"rank", "score", "table1", "table2", "table3", "table4", "table5", "metrics", "page", "all"}
+BODY_CHAIN = {"ingest", "segment", "features", "annotations", "index", "queries", "query_features"}
+
+
+def planned(project: Project) -> dict[str, int]:
+    run = project.snakemake("-n", "--quiet", "rules")
+    assert run.status == 0, run.terminal[-3000:]
+    return run.planned()
+
+
+def test_nothing_changed_nothing_planned(finished: Project) -> None:
+    assert planned(finished) == {}
+
+
+def test_a_comment_in_the_config(copy: Project) -> None:
+    copy.edit("config/test.yaml", "corpora:", "# a thought\ncorpora:")
+    assert planned(copy) == {}
+
+
+def test_a_retrieval_parameter(copy: Project) -> None:
+    copy.edit("config/test.yaml", "experiments:", "index:\n  reduction: mean\n\nexperiments:")
+    found = planned(copy)
+    assert set(found) == AFTER_RANK
+    assert found["rank"] == 8
+
+
+def test_one_take(copy: Project) -> None:
+    take = sorted((copy.path / "data" / "raw" / "everyday").glob("*.bvh"))[0]
+    lines = take.read_text().rstrip("\n").split("\n")
+    values = lines[-1].split()
+    lines[-1] = " ".join([str(float(values[0]) + 0.5), *values[1:]])
+    take.write_text("\n".join(lines) + "\n")
+    found = planned(copy)
+    assert found["ingest"] == found["segment"] == found["features"] == 1, "one shard's chain"
+    assert not set(found) & {"train", "synthesize", "lengths", "film_string", "curves", "strips"}
+    assert not any(rule.startswith("perform") for rule in found)
+    assert len(list((copy.path / "results" / "everyday" / "motion").glob("*.h5"))) > 1, "there are shards"
+
+
+def test_a_module_of_the_library(copy: Project) -> None:
+    copy.edit("src/miburi/retrieval/subspace.py", "import numpy as np", "import numpy as np  # a change")
+    assert set(planned(copy)) == AFTER_RANK | {"index"}
+
+
+def test_a_module_of_the_hand(copy: Project) -> None:
+    copy.edit("src/miburi/hmm/windows.py", "import numpy as np", "import numpy as np  # a change")
+    found = set(planned(copy))
+    assert {"train", "synthesize", "lengths", "curves", "film_string"} <= found
+    assert not found & {"ingest", "annotations", *BODY_CHAIN, "rank", "score"}
+
+
+def test_the_report_alone(copy: Project) -> None:
+    copy.edit("workflow/scripts/page.py", '"""', '"""A page: ')
+    assert set(planned(copy)) == {"page", "all"}
+
+
+def test_the_same_bytes_again_rerun_nothing_after(copy: Project) -> None:
+    """A stage that is run again and writes the same bytes re-runs nothing in the next call."""
+    motion = sorted((copy.path / "results" / "everyday" / "motion").glob("*.h5"))[0]
+    motion.write_bytes(motion.read_bytes())
+    assert planned(copy) == {}
