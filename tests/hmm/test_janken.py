@@ -19,7 +19,7 @@ def takes(tmp_path_factory):
     folder = tmp_path_factory.mktemp("janken")
     janken.write(folder, 0)
     found = []
-    for take in janken.takes():
+    for take in janken.RECORDINGS:
         motion = formats.read(folder / f"{take}.csv")
         intervals = formats.read_labels(folder / f"{take}.lab", fps=motion.fps, frames=len(motion))
         found.append((motion.angles, intervals))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import subprocess
+import sys
 import time
 from collections import Counter
 from functools import cache
@@ -16,6 +18,7 @@ import miburi
 from miburi.figures import FINGERS, HAND
 from miburi.formats import columns, glove, read_annotations, read_labels
 from miburi.perform import janken
+from miburi.perform.janken import wearer
 
 # [H], table 2: frames, intervals
 TABLE_2 = {
@@ -76,7 +79,7 @@ def half_ways(angles: np.ndarray, changes) -> np.ndarray:
 @pytest.mark.parametrize("seed", [0, 2011, "another"])
 def test_counts_are_table_2(seed):
     recordings = janken.perform(seed)
-    assert tuple(recordings) == janken.takes(seed)
+    assert tuple(recordings) == tuple(p.take for p in janken.plan(seed))
     frames, intervals = Counter(), Counter()
     for counts, labels in recordings.values():
         assert labels[0][0] == 0 and labels[-1][1] == len(counts)
@@ -98,7 +101,7 @@ def test_each_recording_alternates_between_two_poses(takes):
 
 def test_lengths_vary_and_add_up():
     for label, (frames, intervals) in TABLE_2.items():
-        lengths = np.array(janken._lengths(3, label))
+        lengths = np.array(wearer._lengths(3, label))
         assert len(lengths) == intervals and lengths.sum() == frames and lengths.min() >= 5
         assert 0.08 < lengths.std() / lengths.mean() < 0.5
 
@@ -215,10 +218,10 @@ def test_small_is_a_part_that_has_every_label(takes):
 
 def test_minimum_jerk_is_flash_and_hogans():
     u = np.linspace(0, 1, 501)
-    s = janken._minimum_jerk(u)
+    s = wearer._minimum_jerk(u)
     assert s[0] == 0 and s[-1] == 1 and (np.diff(s) >= 0).all()
     assert np.gradient(s, u).max() == pytest.approx(15 / 8, abs=1e-3)  # peak speed over mean speed
-    assert janken._minimum_jerk(np.array([-3.0, 7.0])).tolist() == [0.0, 1.0]
+    assert wearer._minimum_jerk(np.array([-3.0, 7.0])).tolist() == [0.0, 1.0]
 
 
 def test_ranges_and_speeds_are_those_of_a_real_glove(folder, takes, recordings):
@@ -239,7 +242,7 @@ def test_ranges_and_speeds_are_those_of_a_real_glove(folder, takes, recordings):
 
 
 def test_fingers_take_turns_as_a_real_hands_do(folder, takes, recordings):
-    """Opening, the little finger goes first and the index last; closing, the other way round; both by 20 to 120 ms."""
+    """Opening, the little finger goes first and the index last; closing, the other way round."""
     home = recordings / "hand/cyberglove_rps"
     real = glove.read_columns(
         home / "mock.txt.gz", Path(__file__).parents[2] / "config/gloves/cyberglove_rps.yaml"
@@ -254,3 +257,22 @@ def test_fingers_take_turns_as_a_real_hands_do(folder, takes, recordings):
             first, last = lags.mean(axis=0)[[3, 0]]
             assert 0.02 < sign * (last - first) < 0.16
         assert 0.4 < (ours / janken.FPS).std() / theirs.std() < 2.0
+
+
+@pytest.mark.parametrize("small", [False, True])
+def test_the_plan_is_what_is_written(tmp_path, small):
+    plan = janken.plan(2011, small=small)
+    names = {p.name for p in janken.write(tmp_path, 2011, small=small)}
+    assert {f for p in plan for f in p.files} | {f"{plan[0].wearer}.yaml", "annotations.tsv"} == names
+    for p in plan:
+        m = miburi.read(tmp_path / f"{p.take}.csv")
+        assert 0.8 < p.seconds * m.fps / len(m) < 1.25
+    if not small:
+        assert sum(p.seconds for p in plan) == pytest.approx(4197 / 30, abs=0.2)
+
+
+def test_the_plan_needs_no_library():
+    """It is read whenever the workflow is parsed."""
+    code = "import sys; from miburi.perform import janken; janken.plan(1); print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"numpy", "scipy", "h5py", "numba", "yaml"} & set(run.stdout.split())

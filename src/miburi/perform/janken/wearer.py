@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -27,30 +26,8 @@ from miburi.formats import glove
 from miburi.formats.annotations import Annotation, write_annotations
 from miburi.formats.labels import Interval, write_labels
 from miburi.motion import Floats
+from miburi.perform.janken import COUNTS, FPS, RECORDINGS, SMALL, WEARER, alternation
 
-FPS = 30.0
-
-COUNTS: Mapping[str, tuple[int, int]] = {
-    "p": (978, 41),
-    "r": (581, 42),
-    "s": (758, 41),
-    "pr": (377, 20),
-    "rp": (269, 20),
-    "rs": (234, 20),
-    "sr": (373, 20),
-    "ps": (357, 20),
-    "sp": (270, 21),
-}
-"""Frames and intervals of each label ([H], table 2)."""
-
-# The one way in which these counts come out of three recordings that alternate and begin and end with a hold:
-# 41, 41 and 42 holds, the first two from rock to rock, the third from scissors to paper.
-_RECORDINGS = {
-    "rock_scissors": ("r", "s", 41),
-    "rock_paper": ("r", "p", 41),
-    "paper_scissors": ("s", "p", 42),
-}
-_SMALL = 17  # holds of each recording of a small corpus
 _SHORTEST = {1: 5, 2: 6}  # frames: a hold, a change
 
 
@@ -128,11 +105,6 @@ _COUPLED = np.eye(_FINGERS)
 _COUPLED[2:5, 2:5] = [[0.95, 0.3, 0.0], [0.2, 0.8, 0.57], [0.0, 0.6, 0.8]]
 
 
-def takes(seed: int = 0) -> tuple[str, ...]:
-    """Names of the recordings; the same for every seed."""
-    return tuple(_RECORDINGS)
-
-
 def calibration() -> dict[str, dict[str, Any]]:
     """The wearer's calibration: sensor → gain (degrees per count), offset (count), joint, axis; {}: no joint.
 
@@ -167,15 +139,15 @@ def perform(seed: int, *, small: bool = False) -> dict[str, tuple[NDArray[np.int
     lengths = {label: iter(_lengths(seed, label)) for label in COUNTS}
     device = _Device.drawn(seed)
     recordings = {}
-    for take, (first, second, holds) in _RECORDINGS.items():
-        labels = _alternation(first, second, holds)
+    for take in RECORDINGS:
+        labels = alternation(take)
         ends = np.cumsum([next(lengths[label]) for label in labels])
         starts = np.concatenate([[0], ends[:-1]])
         intervals = [(int(s), int(e), n) for s, e, n in zip(starts, ends, labels, strict=True)]
         angles = _angles(intervals, store.seed(seed, "janken", take, "hand"))
         counts = device.read(angles, store.seed(seed, "janken", take, "glove"))
         if small:
-            intervals = intervals[: 2 * _SMALL - 1]
+            intervals = intervals[: 2 * SMALL - 1]
             counts = counts[: intervals[-1][1]]
         recordings[take] = counts, intervals
     return recordings
@@ -198,18 +170,9 @@ def write(folder: str | os.PathLike[str], seed: int, *, small: bool = False) -> 
         rows += [Annotation(take, s / FPS, e / FPS, label) for s, e, label in labels]
         written += [log, lab]
     body = yaml.safe_dump({"sensors": calibration()}, sort_keys=False, default_flow_style=None, width=160)
-    store.write_text(home / "wearer.yaml", f"# miburi glove calibration 1, simulated=1\n{body}")
+    store.write_text(home / f"{WEARER}.yaml", f"# miburi glove calibration 1, simulated=1\n{body}")
     write_annotations(home / "annotations.tsv", rows)
-    return [*written, home / "wearer.yaml", home / "annotations.tsv"]
-
-
-def _alternation(first: str, second: str, holds: int) -> list[str]:
-    """Hold, change, hold …, as "r rs s sr r" for first "r", second "s" and 3 holds."""
-    poses = [(first, second)[k % 2] for k in range(holds)]
-    labels = [poses[0]]
-    for one, other in pairwise(poses):
-        labels += [one + other, other]
-    return labels
+    return [*written, home / f"{WEARER}.yaml", home / "annotations.tsv"]
 
 
 def _lengths(seed: int, label: str) -> list[int]:
