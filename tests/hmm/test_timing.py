@@ -106,8 +106,8 @@ def test_a_length_is_met_exactly(states, more):
 
 
 def test_equal_remainders_go_to_the_first():
-    frames, _ = frames_per_state(np.full(40, 3.0), np.ones(40), length=137)
-    assert frames.tolist() == [4] * 17 + [3] * 23
+    frames, _ = frames_per_state(np.tile([3.0, 3.2], 20), np.ones(40), length=134)
+    assert frames.tolist() == [3, 4] * 14 + [3, 3] * 6
 
 
 @pytest.mark.parametrize(
