@@ -127,7 +127,7 @@ def kick(b: Score, times: int) -> Span:
     stance = b.local(b.last(f"{other}_foot").value)
     for _ in range(times):
         back, go, down = b.beat(0.45), b.beat(0.32), b.beat(0.5)
-        high = b.vary(0.55, 0.14) * k * who.size
+        high = min(max(b.vary(0.5, 0.12) * who.size, 0.25), 0.66) * k
         far = b.vary(0.68, 0.04) * k
         foot = b.last(f"{side}_foot").value
         place = b.local(foot)
@@ -144,6 +144,8 @@ def kick(b: Score, times: int) -> Span:
         b.look(t, t + back, 14.0)
         t += back
         b.move(f"{side}_foot", t, t + go, b.world(place[0] * 0.6, high, far))
+        b.move(f"{side}_lift", t, t + 0.5 * go, (-0.1 * k,))  # the foot swings below the straight way
+        b.move(f"{side}_lift", t + 0.5 * go, t + go, (0.0,))
         b.move(f"{side}_sole", t, t + go, (yaw, 18.0 - 75.0 * high / k))
         b.pelvis(t, t + go, 0.8 * stance[0], -0.025, 0.06 * k)
         b.turn(t - 0.05, t + go, -sign * 16.0, -12.0, 0.0)

@@ -294,7 +294,10 @@ def embody(b: Score, rng: np.random.Generator, name: str = "") -> Motion:
         knee = hip + _apply(thigh, np.array([0.0, -who.thigh, 0.0]))
         world[f"{long}UpLeg"], world[f"{long}Leg"], world[f"{long}Foot"] = thigh, shank, soles[s]
         pitch = curve(k[f"{s}_sole"], t)[:, 1]
-        bend = np.maximum(pitch, 0.0) * (1 - 0.75 * free[s])
+        # toes stay on the ground under a heel that rises, and follow the foot once it is clear of it
+        ball = ankles[s][:, 1] + _apply(soles[s], offsets[_J[f"{long}ToeBase"]])[:, 1]
+        u = np.clip((ball - people.BALL * who.height) / 0.07, 0.0, 1.0)
+        bend = np.maximum(pitch, 0.0) * (1 - 0.75 * u * u * (3 - 2 * u))
         world[f"{long}ToeBase"] = soles[s] @ _turn("X", -bend)
         _upper(b, s, rng, t, skeleton.offsets, at, world, knee, flat, hip)
 

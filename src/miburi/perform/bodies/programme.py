@@ -121,7 +121,7 @@ def plan(seed: int, small: bool = False) -> list[Plan]:
     free = [k for k in OTHERS if k in SECONDS]
     if small:
         performers, takes = PERFORMERS[:2], 3
-        wanted = {p: list(KEYWORDS) + rng.sample(free, 2) for p in performers}
+        wanted = {p: list(KEYWORDS) for p in performers}
     else:
         performers, takes = PERFORMERS, _TAKES
         wanted = {p: list(free) + rng.sample(free, 3) for p in performers}
@@ -148,7 +148,7 @@ def _take(name: str, performer: str, keywords: list[str], rng: random.Random, sm
     clips = []
     for keyword in keywords:
         low, high = REPETITIONS.get(keyword, (1, 1))
-        high = min(high, max(low, 3)) if small else high
+        low, high = (max(low - 1, 1), low) if small else (low, high)
         clips.append(Clip(keyword, rng.randint(low, high), rng.randrange(2**31)))
     seconds = (
         0.3
