@@ -1,0 +1,1 @@
+"""What was meant against what was found: queries, protocols, statistics, tables, metrics."""
