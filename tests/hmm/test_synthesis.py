@@ -156,6 +156,11 @@ def test_unknown_labels_are_named(models, string, said):
             work()
 
 
+def test_a_label_with_a_blank_is_no_label_of_a_string(models):
+    with pytest.raises(InputError, match="label 'thumb up' has a blank in it"):
+        synthesize({"thumb up": models["up"]}, ["thumb up"])
+
+
 def test_models_must_fit_together(models):
     with pytest.raises(InputError, match="models 'up' and 'down' differ in half lengths of delta windows"):
         synthesize({**models, "down": replace(models["down"], half=(2, 2))}, "up down")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from threadpoolctl import threadpool_limits
 
 from miburi import InputError, store
 from miburi.hmm import Model, deltas, kernels, train
@@ -249,6 +250,18 @@ def test_floor_is_a_share_of_the_reference():
     assert (own.variance >= 0.5 * np.concatenate(x).var(axis=0) * (1 - 1e-12)).all()
 
 
+@pytest.mark.parametrize("exits", [True, False])
+def test_ten_thousand_frames(exits):
+    """Long sequences of many dimensions, whose densities no number could hold without logarithms."""
+    rng = np.random.default_rng(0)
+    x = np.concatenate([rng.normal(k, 1.0, (n, 60)) for k, n in enumerate((2000, 5000, 3000))])
+    model = train([x], exit=exits, iterations=30, tolerance=1e-9)
+    assert model.converged and np.isfinite(model.log_likelihood).all()
+    assert np.allclose(model.duration_mean, [2000, 5000, 3000], rtol=1e-9)
+    assert np.allclose(model.mean, [[0.0], [1.0], [2.0]], atol=0.1)
+    assert np.allclose(model.variance, 1.0, atol=0.15)
+
+
 def test_one_frame():
     model = train([[[3.0, 4.0]]], states=1)
     assert model.mean.tolist() == [[3.0, 4.0]] and model.duration_mean.tolist() == [1.0]
@@ -295,6 +308,16 @@ def test_two_runs_write_the_same_bytes(tmp_path):
     for name in ("a", "b"):
         train([s.copy() for s in x], label="rp").save(tmp_path / f"{name}.h5")
     assert store.digest(tmp_path / "a.h5") == store.digest(tmp_path / "b.h5")
+
+
+def test_threads_change_nothing():
+    x = movements(np.random.default_rng(0), 20, 15, 25, dims=48)
+    found = []
+    for threads in (1, 2):
+        with threadpool_limits(threads, "blas"):
+            model = train(x, covariance="full", iterations=4)
+        found.append(model.covariance.tobytes() + model.mean.tobytes() + model.log_likelihood.tobytes())
+    assert found[0] == found[1]
 
 
 def test_a_damaged_model_is_named(tmp_path):

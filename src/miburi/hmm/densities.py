@@ -5,12 +5,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any, TypeVar
+
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
+from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
 
 from miburi.hmm import kernels
 from miburi.hmm.windows import Floats
 
+_Work = TypeVar("_Work", bound=Callable[..., Any])
+# linear algebra by one thread, so that results do not depend on how many there are
+_one_thread: Callable[[_Work], _Work] = threadpool_limits.wrap(limits=1, user_api="blas")
 _RARE = 1e-8  # a state with fewer expected frames keeps its Gaussian
 
 
@@ -30,6 +38,11 @@ def log_densities(x: Floats, mean: Floats, variance: Floats) -> Floats:
     if variance.ndim == 2:
         found: Floats = kernels.log_densities(x, mean, variance)
         return found
+    return _full_log_densities(x, mean, variance)
+
+
+@_one_thread
+def _full_log_densities(x: Floats, mean: Floats, variance: Floats) -> Floats:
     out = np.empty((len(x), len(mean)))
     for i, root in enumerate(np.linalg.cholesky(variance)):
         z = solve_triangular(root, (x - mean[i]).T, lower=True)
@@ -65,18 +78,25 @@ def reestimate(
     """
     occupied = gamma.sum(axis=0)
     kept = occupied < _RARE
-    weight = np.where(kept, 1.0, occupied)[:, None]
     if variance.ndim == 2:
+        weight = np.where(kept, 1.0, occupied)[:, None]
         first, second = kernels.moments(x, gamma, mean)
         shift = first / weight
         new = np.maximum(second / weight - shift**2, floors)
         return np.where(kept[:, None], mean, mean + shift), np.where(kept[:, None], variance, new)
+    return _full_reestimate(x, gamma, mean, variance, floors, kept)
+
+
+@_one_thread
+def _full_reestimate(
+    x: Floats, gamma: Floats, mean: Floats, variance: Floats, floors: Floats, kept: NDArray[np.bool_]
+) -> tuple[Floats, Floats]:
     new_mean, new_variance = mean.copy(), variance.copy()
     for i in np.flatnonzero(~kept):
-        z = x - mean[i]
-        shift = gamma[:, i] @ z / weight[i]
+        z, weight = x - mean[i], gamma[:, i] / gamma[:, i].sum()
+        shift = weight @ z
         new_mean[i] = mean[i] + shift
-        new_variance[i] = _floored((z * gamma[:, i, None]).T @ z / weight[i] - np.outer(shift, shift), floors)
+        new_variance[i] = _floored((z * weight[:, None]).T @ z - np.outer(shift, shift), floors)
     return new_mean, new_variance
 
 

@@ -159,6 +159,8 @@ def check_string(
                 f"string {' '.join(found)!r}: label {place} is {label!r}, "
                 f"known are {', '.join(sorted(labels))}"
             )
+        if label.split() != [label]:
+            raise InputError(f"label {label!r} has a blank in it, which separates the labels of a string")
     return found
 
 
