@@ -79,7 +79,7 @@ def _performed(name: str, corpus: settings.Corpus, seed: int) -> list[Take]:
         from miburi.perform import janken
 
         plan = janken.plan(seed, small=corpus.small)
-        return [Take(p.take, "wearer", f"{folder}/{p.take}.csv", 0, p.seconds) for p in plan]
+        return [Take(p.take, p.wearer, f"{folder}/{p.take}.csv", 0, p.seconds) for p in plan]
     from miburi.perform import bodies
 
     return [

@@ -26,6 +26,7 @@ rule rank:
         index="results/{corpus}/index.h5",
         table="data/raw/{corpus}/queries/{experiment}/queries.tsv",
         queries="results/{corpus}/queries/{experiment}.h5",
+        takes="results/{corpus}/takes.csv",
     output:
         "results/{corpus}/ranks/{experiment}/{measure}.h5",
     log:

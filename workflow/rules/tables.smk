@@ -45,6 +45,7 @@ if CONFIG.tables.string:
         benchmark:
             "results/benchmarks/tables/label_counts.tsv"
         params:
+            simulated=FLOW.simulated(FLOW.shown_corpus()),
             code=code("label_counts.py"),
         resources:
             mem_mb=megabytes(500),

@@ -22,7 +22,10 @@ def main(snakemake):
             logging.warning("set aside: %s", error)
             skipped.append((name, path, str(error)))
     artefacts.write_motions(snakemake.output.motion, motions, recordings, store.sources(*snakemake.input))
-    with store.replaced(snakemake.output.skipped) as path, open(path, "w", encoding="utf-8", newline="") as file:
+    with (
+        store.replaced(snakemake.output.skipped) as path,
+        open(path, "w", encoding="utf-8", newline="") as file,
+    ):
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["take", "recording", "reason"])
         table.writerows(skipped)

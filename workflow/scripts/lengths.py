@@ -24,9 +24,17 @@ def main(snakemake):
         ("length, this run", len(synthesis), "frames"),
         ("length, spliced", len(spliced.trajectory), "frames"),
         ("largest jump, generated", f"{largest_step(synthesis.trajectory):.4f}", "degrees"),
-        ("largest jump at joins, generated", f"{largest_step(synthesis.trajectory, synthesis.boundaries):.4f}", "degrees"),
+        (
+            "largest jump at joins, generated",
+            f"{largest_step(synthesis.trajectory, synthesis.boundaries):.4f}",
+            "degrees",
+        ),
         ("largest jump, spliced", f"{largest_step(spliced.trajectory):.4f}", "degrees"),
-        ("largest jump at joins, spliced", f"{largest_step(spliced.trajectory, spliced.boundaries):.4f}", "degrees"),
+        (
+            "largest jump at joins, spliced",
+            f"{largest_step(spliced.trajectory, spliced.boundaries):.4f}",
+            "degrees",
+        ),
     ]
     with store.replaced(snakemake.output[0]) as path, open(path, "w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")

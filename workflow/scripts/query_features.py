@@ -10,7 +10,9 @@ from miburi.retrieval.body import features, reset_yaw
 
 def main(snakemake):
     values, fps, segments = {}, {}, []
-    logs = {q.query: Path(snakemake.input.logs) / f"{q.query}.csv" for q in read_queries(snakemake.input.table)}
+    logs = {
+        q.query: Path(snakemake.input.logs) / f"{q.query}.csv" for q in read_queries(snakemake.input.table)
+    }
     for query, path in sorted(logs.items()):
         motion = puppet.read(path)
         values[query] = reset_yaw(features(motion, **snakemake.params.settings))

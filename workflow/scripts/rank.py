@@ -1,5 +1,6 @@
 """Index and queries → what one measure ranks first, and how long it took."""
 
+import csv
 import time
 
 import numpy as np
@@ -14,15 +15,19 @@ from miburi.retrieval.ranking import ranking
 def main(snakemake):
     index = Index.open(snakemake.input.index)
     segments = list(zip(index.take, index.start.tolist(), index.end.tolist(), strict=True))
+    with open(snakemake.input.takes, encoding="utf-8", newline="") as file:
+        subjects = {row["take"]: row["subject"] for row in csv.DictReader(file)}
     queries = read_queries(snakemake.input.table)
     features, _, _ = artefacts.read_features(snakemake.input.queries)
     measure, reduction = snakemake.wildcards.measure, snakemake.params.reduction
-    index.distances(features[queries[0].query], measure, reduction=reduction)  # kernels are compiled and loaded
+    index.distances(
+        features[queries[0].query], measure, reduction=reduction
+    )  # kernels are compiled and loaded
     orders, scores, seconds = [], [], []
     for query in queries:
         start = time.perf_counter()
         distance = index.distances(features[query.query], measure, reduction=reduction)
-        found = ranking(np.where(left_out(query, segments), np.inf, distance))
+        found = ranking(np.where(left_out(query, segments, subjects), np.inf, distance))
         seconds.append(time.perf_counter() - start)
         orders.append(found.order)
         scores.append(found.score)

@@ -161,7 +161,10 @@ def read_scores(path: Path) -> list[Score]:
         found = []
         for line, row in enumerate(table, 2):
             try:
-                cells = {f.name: {"int": int, "float": float}.get(str(f.type), str)(row[f.name]) for f in fields(Score)}
+                cells = {
+                    f.name: {"int": int, "float": float}.get(str(f.type), str)(row[f.name])
+                    for f in fields(Score)
+                }
             except (TypeError, ValueError):
                 raise InputError(f"{path}, line {line}: a number cannot be read") from None
             found.append(Score(**cells))

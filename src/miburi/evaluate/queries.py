@@ -13,7 +13,8 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -140,10 +141,12 @@ def plan_queries(
                 if protocol == 2 and imagined:
                     queries.append(query)
                     continue
-                shared = (seed, experiment, keyword) if protocol != 2 else (seed, experiment, keyword, user.name)
+                shared = (
+                    (seed, experiment, keyword) if protocol != 2 else (seed, experiment, keyword, user.name)
+                )
                 i = mine[int(store.seed("target", *shared).integers(len(mine)))]
                 take, start, end = segments[i]
-                clip = {"take": take, "start": start, "end": end}
+                clip: dict[str, Any] = {"take": take, "start": start, "end": end}
                 if protocol == 3:
                     clip["without_subject"] = subjects[take]
                 if protocol == 2:
@@ -154,12 +157,8 @@ def plan_queries(
                         )
                     a, b = _interval(segments, i, keyword, intervals, mine)
                     clip |= {"without_take": take, "without_start": a, "without_end": b}
-                queries.append(Query(**{**_as_dict(query), **clip}))
+                queries.append(replace(query, **clip))
     return queries
-
-
-def _as_dict(query: Query) -> dict[str, object]:
-    return {f.name: getattr(query, f.name) for f in fields(query)}
 
 
 def _interval(
@@ -217,7 +216,8 @@ def read_queries(path: Path) -> list[Query]:
         for line, row in enumerate(table, 2):
             try:
                 values = {
-                    f.name: {"int": int, "float": float}.get(str(f.type), str)(row[f.name]) for f in fields(Query)
+                    f.name: {"int": int, "float": float}.get(str(f.type), str)(row[f.name])
+                    for f in fields(Query)
                 }
             except (TypeError, ValueError):
                 raise InputError(f"{path}, line {line}: a number cannot be read") from None

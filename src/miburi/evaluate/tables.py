@@ -1,0 +1,265 @@
+"""The papers' tables: our figure and the printed one side by side.
+
+Averages are computed from the rows. [P]'s own averages do not all follow from its rows (table 1, DSPM(GP-LVM) in
+protocol 1, and table 3, MSM), so the rows `mean` recompute the paper's too.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from miburi import store
+from miburi.evaluate import printed
+from miburi.evaluate.protocols import Score
+from miburi.evaluate.statistics import interval
+
+Row = dict[str, Any]
+NOT_YET = "not implemented yet"
+
+
+def table(name: str, scores: Sequence[Score], seed: int = 0) -> list[Row]:
+    """A table of [P].
+
+    Parameters
+    ----------
+    name
+        "table1" to "table5".
+    scores
+        Of the experiment that the table shows.
+    seed
+        Of the intervals' bootstrap.
+    """
+    return _TABLES[name](name, scores, seed)
+
+
+def _means(
+    rows: Iterable[Mapping[str, str]], keys: Sequence[str], value: str
+) -> dict[tuple[str, ...], float]:
+    found: dict[tuple[str, ...], list[float]] = {}
+    for row in rows:
+        found.setdefault(tuple(row[k] for k in keys), []).append(float(row[value]))
+    return {key: float(np.mean(values)) for key, values in found.items()}
+
+
+def _ordered(names: Iterable[str], first: Iterable[str]) -> list[str]:
+    """Names without repeats, those of the paper first."""
+    wanted = set(names)
+    return [n for n in dict.fromkeys(first) if n in wanted] + [
+        n for n in dict.fromkeys(names) if n not in set(first)
+    ]
+
+
+def _round(value: float | None, digits: int = 3) -> float | str:
+    return "" if value is None or not np.isfinite(value) else round(value, digits)
+
+
+def _hits(name: str, scores: Sequence[Score], seed: int) -> list[Row]:
+    """Tables 1 and 3: how many users find what they wanted among the first 10 (5)."""
+    paper = printed.table(name)
+    theirs = {(r["protocol"], r["measure"], r["keyword"]): r for r in paper}
+    measures = _ordered(
+        [s.measure for s in scores] + [r["measure"] for r in paper], [r["measure"] for r in paper]
+    )
+    keywords = _ordered([s.keyword for s in scores], [r["keyword"] for r in paper])
+    protocols = sorted({s.protocol for s in scores})
+    rows = []
+    for protocol in protocols:
+        for measure in measures:
+            mine = [s for s in scores if s.protocol == protocol and s.measure == measure]
+            printed_rows = [r for r in paper if r["protocol"] == str(protocol) and r["measure"] == measure]
+            if not mine and not printed_rows:
+                continue
+            for keyword in keywords:
+                here = [s for s in mine if s.keyword == keyword]
+                there = theirs.get((str(protocol), measure, keyword))
+                rows.append(
+                    _head(protocol, measure, keyword)
+                    | _counted(here)
+                    | {
+                        "hit10_low": "",
+                        "hit10_high": "",
+                        "hit10_paper": there["users_hit_top10"] if there else "",
+                        "hit5_paper": there["users_hit_top5"] if there else "",
+                        "users_paper": there["users"] if there else "",
+                    }
+                    | _tail(mine)
+                )
+            rows.append(
+                _head(protocol, measure, "mean")
+                | _mean_hits(mine, seed)
+                | _mean_paper(printed_rows)
+                | _tail(mine)
+            )
+    return rows
+
+
+def _head(protocol: int, measure: str, keyword: str) -> Row:
+    return {"protocol": protocol, "measure": measure, "keyword": keyword}
+
+
+def _tail(mine: Sequence[Score]) -> Row:
+    queries = ", ".join(sorted({s.queries for s in mine})) or "simulated"
+    return {"queries": queries, "note": "" if mine else NOT_YET}
+
+
+def _counted(here: Sequence[Score]) -> Row:
+    if not here:
+        return dict.fromkeys(("hit10", "hit5", "users", "chance10", "chance5"), "")
+    return {
+        "hit10": sum(s.hit10 for s in here),
+        "hit5": sum(s.hit5 for s in here),
+        "users": len(here),
+        "chance10": _round(sum(s.chance_hit10 for s in here)),
+        "chance5": _round(sum(s.chance_hit5 for s in here)),
+    }
+
+
+def _mean_hits(mine: Sequence[Score], seed: int) -> Row:
+    """Per keyword: users that hit, mean over keywords, with an interval over queries."""
+    if not mine:
+        return dict.fromkeys(("hit10", "hit5", "users", "chance10", "chance5", "hit10_low", "hit10_high"), "")
+    users = len(mine) / len({s.keyword for s in mine})
+    low, high = interval([s.hit10 for s in mine], (seed, mine[0].measure, mine[0].protocol))
+    return {
+        "hit10": _round(users * float(np.mean([s.hit10 for s in mine]))),
+        "hit5": _round(users * float(np.mean([s.hit5 for s in mine]))),
+        "users": _round(users),
+        "chance10": _round(users * float(np.mean([s.chance_hit10 for s in mine]))),
+        "chance5": _round(users * float(np.mean([s.chance_hit5 for s in mine]))),
+        "hit10_low": _round(users * low),
+        "hit10_high": _round(users * high),
+    }
+
+
+def _mean_paper(rows: Sequence[Mapping[str, str]]) -> Row:
+    if not rows:
+        return {"hit10_paper": "", "hit5_paper": "", "users_paper": ""}
+    return {
+        "hit10_paper": _round(float(np.mean([float(r["users_hit_top10"]) for r in rows]))),
+        "hit5_paper": _round(float(np.mean([float(r["users_hit_top5"]) for r in rows]))),
+        "users_paper": rows[0]["users"],
+    }
+
+
+def _target_ranks(name: str, scores: Sequence[Score], seed: int) -> list[Row]:
+    """Table 2: mean rank of the clip that was shown, protocol 1."""
+    paper = printed.table(name)
+    theirs = {(r["measure"], r["keyword"]): float(r["mean_rank_of_target"]) for r in paper}
+    shown = [s for s in scores if s.protocol == 1]
+    measures = _ordered(
+        [s.measure for s in shown] + [r["measure"] for r in paper], [r["measure"] for r in paper]
+    )
+    keywords = _ordered([s.keyword for s in shown], [r["keyword"] for r in paper])
+    rows = []
+    for measure in measures:
+        mine = [s for s in shown if s.measure == measure]
+        for keyword in [*keywords, "mean"]:
+            here = [s for s in mine if keyword in (s.keyword, "mean")]
+            there = [v for (m, k), v in theirs.items() if m == measure and keyword in (k, "mean")]
+            low, high = interval([s.rank for s in here], (seed, measure, keyword)) if here else (None, None)
+            rows.append(
+                {
+                    "measure": measure,
+                    "keyword": keyword,
+                    "mean_rank": _round(float(np.mean([s.rank for s in here]))) if here else "",
+                    "mean_rank_low": _round(low),
+                    "mean_rank_high": _round(high),
+                    "mean_rank_paper": _round(float(np.mean(there))) if there else "",
+                    "chance_rank": _round(float(np.mean([s.chance_rank for s in here]))) if here else "",
+                    "segments": here[0].segments if here else "",
+                    "segments_paper": printed.SEGMENTS[name],
+                }
+                | _tail(mine)
+            )
+    return rows
+
+
+def _seconds(name: str, scores: Sequence[Score], seed: int) -> list[Row]:
+    """Tables 4 and 5: seconds per query; ours is the median over all queries, on one core of this machine."""
+    paper = printed.table(name)
+    measures = _ordered(
+        [s.measure for s in scores] + [r["measure"] for r in paper], [r["measure"] for r in paper]
+    )
+    rows = []
+    for measure in measures:
+        mine = [s for s in scores if s.measure == measure]
+        there = [r for r in paper if r["measure"] == measure] or [{}]
+        for r in there:
+            rows.append(
+                {
+                    "measure": measure,
+                    "seconds": f"{float(np.median([s.seconds for s in mine])):.3g}" if mine else "",
+                    "segments": max(s.segments for s in mine) if mine else "",
+                    "seconds_paper": r.get("seconds_per_query", ""),
+                    "implementation_paper": r.get("implementation", ""),
+                    "segments_paper": printed.SEGMENTS[name] if r else "",
+                }
+                | _tail(mine)
+            )
+    return rows
+
+
+_TABLES: dict[str, Callable[[str, Sequence[Score], int], list[Row]]] = {
+    "table1": _hits,
+    "table2": _target_ranks,
+    "table3": _hits,
+    "table4": _seconds,
+    "table5": _seconds,
+}
+
+
+def label_counts(
+    intervals: Sequence[tuple[str, int]], lengths: Sequence[Mapping[str, str]], recordings: str
+) -> list[Row]:
+    """[H]'s table 2 and the length of its string.
+
+    Parameters
+    ----------
+    intervals
+        Label and frames of each labelled interval.
+    lengths
+        Rows `quantity`, `value`, `unit` of the string that was synthesised.
+    recordings
+        "simulated" or "recorded".
+    """
+    theirs = {r["label"]: r for r in printed.table("label_counts")}
+    labels = _ordered([label for label, _ in intervals], list(theirs))
+    rows = []
+    for quantity in ("frames", "intervals"):
+        for label in [*labels, "all"]:
+            mine = [n for name, n in intervals if label in (name, "all")]
+            there = [int(r[quantity]) for name, r in theirs.items() if label in (name, "all")]
+            rows.append(
+                {
+                    "quantity": quantity,
+                    "label": label,
+                    "value": sum(mine) if quantity == "frames" else len(mine),
+                    "paper": sum(there) if there else "",
+                    "unit": quantity,
+                }
+            )
+    for row in lengths:
+        if row["quantity"].startswith("length") and not row["quantity"].endswith("spliced"):
+            rows.append(
+                {
+                    "quantity": row["quantity"],
+                    "label": "",
+                    "value": row["value"],
+                    "paper": printed.LENGTH,
+                    "unit": "frames",
+                }
+            )
+    return [row | {"recordings": recordings} for row in rows]
+
+
+def write_table(path: str | os.PathLike[str], rows: Sequence[Row]) -> None:
+    """Write a table as CSV."""
+    with store.replaced(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as file:
+        table = csv.DictWriter(file, list(rows[0]) if rows else [], lineterminator="\n")
+        table.writeheader()
+        table.writerows(rows)
