@@ -14,6 +14,7 @@ from typing import Any
 from miburi import corpora, job, takes
 from miburi.config import Config, Corpus, check
 from miburi.errors import InputError
+from miburi.takes import Take
 
 _READ = (
     "skeleton",
@@ -52,12 +53,12 @@ class Flow:
         return self.config.corpora[name]
 
     @cached_property
-    def takes(self) -> dict[str, list[takes.Take]]:
+    def takes(self) -> dict[str, list[Take]]:
         """Takes of each corpus."""
         return {name: corpora.takes(name, self.config) for name in self.config.corpora}
 
     @cached_property
-    def shards(self) -> dict[str, dict[str, list[takes.Take]]]:
+    def shards(self) -> dict[str, dict[str, list[Take]]]:
         """Takes of each shard of each corpus."""
         return {name: corpora.shards(found, self.config.shard_seconds) for name, found in self.takes.items()}
 
