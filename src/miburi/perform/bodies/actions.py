@@ -97,17 +97,17 @@ def twists(b: Score, times: int) -> Span:
             b.move(f"{side}_swivel", t, t + ready, (25.0,))
     t += ready
     start = t - 0.15
-    side = 1.0 if b.rng.random() < 0.5 else -1.0
+    way = 1.0 if b.rng.random() < 0.5 else -1.0
     size = b.who.size
     lean, stoop = float(b.rng.uniform(-2.0, 13.0)), float(b.rng.uniform(0.0, 12.0))
     for number in range(2 * times):
         span = b.beat(0.72) * (0.7 if number == 0 else 1.0)
-        b.turn(t, t + span, 24.0 * side * size, 0.0, 0.0)
-        b.trunk(t + 0.03, t + span + 0.04, stoop, lean * side, b.vary(40.0, 3.0) * side * size)
-        b.look(t + 0.02, t + span + 0.06, 0.0, b.vary(15.0, 4.0) * side)
-        b.pelvis(t, t + span, -0.02 * side, -0.012, 0.0)
+        b.turn(t, t + span, 24.0 * way * size, 0.0, 0.0)
+        b.trunk(t + 0.03, t + span + 0.04, stoop, lean * way, b.vary(40.0, 3.0) * way * size)
+        b.look(t + 0.02, t + span + 0.06, 0.0, b.vary(15.0, 4.0) * way)
+        b.pelvis(t, t + span, -0.02 * way, -0.012, 0.0)
         t += span + 0.04
-        side = -side
+        way = -way
     end = t
     back = b.beat(0.5)
     b.rise(t, t + back)

@@ -32,12 +32,14 @@ _ELBOWS = (
 
 def _turn(order: str, *degrees: Floats) -> Floats:
     """Matrices (T, 3, 3) of intrinsic turns."""
-    return Rotation.from_euler(order, np.stack(degrees, axis=-1), degrees=True).as_matrix()
+    frames: Floats = Rotation.from_euler(order, np.stack(degrees, axis=-1), degrees=True).as_matrix()
+    return frames
 
 
 def _apply(frames: Floats, vectors: Floats) -> Floats:
     """Vectors (T, 3) or (3,) of frames (T, 3, 3) in the world."""
-    return np.einsum("tij,tj->ti", frames, np.broadcast_to(vectors, (len(frames), 3)))
+    turned: Floats = np.einsum("tij,tj->ti", frames, np.broadcast_to(vectors, (len(frames), 3)))
+    return turned
 
 
 def _speeds(keys: list[Key]) -> Floats:
@@ -93,7 +95,8 @@ def _framed(
         if k.frame == "world":
             return np.repeat(value[None], len(t[rows]), axis=0)
         origin, axes = frames[k.frame]
-        return origin[rows] + axes[rows] @ (value * [mirror, 1.0, 1.0])
+        moving: Floats = origin[rows] + axes[rows] @ (value * [mirror, 1.0, 1.0])
+        return moving
 
     speeds = _speeds(keys)
     result = place(keys[-1], slice(0, len(t)))
@@ -119,7 +122,8 @@ def _unrest(rng: np.random.Generator, frames: int, width: int, hz: float) -> Flo
     sigma = FPS / (2 * np.pi * hz)
     pad = int(4 * sigma) + 1
     noise = gaussian_filter1d(rng.standard_normal((frames + 2 * pad, width)), sigma, axis=0, mode="nearest")
-    return noise[pad : pad + frames] * np.sqrt(2 * np.sqrt(np.pi) * sigma)
+    result: Floats = noise[pad : pad + frames] * np.sqrt(2 * np.sqrt(np.pi) * sigma)
+    return result
 
 
 def _lower(a: Floats, b: Floats, soft: float = 0.006) -> Floats:
@@ -131,7 +135,8 @@ def _ahead(dip: Floats, seconds: float = 0.1) -> Floats:
     """At least as low as a dip (T,), and in time: the body sinks before its foot lands, not when it does."""
     reach = round(seconds * FPS)
     widest = maximum_filter1d(dip, 2 * reach + 1, mode="nearest")
-    return gaussian_filter1d(widest, 0.4 * reach, radius=reach, mode="nearest")
+    result: Floats = gaussian_filter1d(widest, 0.4 * reach, radius=reach, mode="nearest")
+    return result
 
 
 def _standing(air: list[tuple[float, float]], t: Floats, ramp: float = 0.09) -> Floats:

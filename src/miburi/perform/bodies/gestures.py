@@ -10,62 +10,61 @@ from miburi.perform.bodies.steps import home, stand, swing
 Span = tuple[float, float]
 
 
-def punch(b: Score, times: int) -> Span:
-    """Right punches out of a guard, left foot ahead: straight, hooked or upwards, with shoulder and hip."""
-    who, k = b.who, b.who.height / 1.75
+def punch(b: Score, times: int, side: str = "r") -> Span:
+    """Punches out of a guard, the other foot ahead: straight, hooked or upwards, with shoulder and hip."""
+    who, k, other = b.who, b.who.height / 1.75, b.other(side)
+    m = -b.out(side)  # towards the other side
     half = 0.1 * k * who.stance
     deep = b.vary(0.15, 0.03) * k
-    ahead = who.ball_ahead
-    stand(b, (half, 0.0, ahead + deep), (-half, 0.0, ahead - deep), yaws=(-14.0, -32.0), seconds=0.38)
+    places = {
+        s: (b.out(s) * half, 0.0, who.ball_ahead + (deep if s == other else -deep)) for s in (side, other)
+    }
+    toes = {other: -14.0 * m, side: -32.0 * m}
+    stand(b, places["l"], places["r"], yaws=(toes["l"], toes["r"]), seconds=0.38)
     t = b.now
     low = -0.035 - 0.02 * b.rng.random()
     ready = b.beat(0.4)
-    b.pelvis(t - 0.15, t + ready, 0.0, low, 0.02)
-    b.turn(t - 0.15, t + ready, -28.0, 4.0, 0.0)
-    b.trunk(t - 0.1, t + ready, 7.0, 0.0, 4.0)
-    b.look(t - 0.1, t + ready, -8.0, 22.0)
-    guard = {"r": (-0.12, 0.08, 0.38), "l": (-0.08, 0.04, 0.58)}
-    for side, value in guard.items():
-        b.reach(side, t - 0.2, t + ready, value)
+    bounce = b.rng.random() < 0.5
+
+    def guard(s: float, e: float) -> None:
+        b.pelvis(s, e, 0.0, low, 0.02)
+        b.turn(s, e, -28.0 * m, 4.0, 0.0)
+        b.trunk(s, e, 7.0, 0.0, 4.0 * m)
+        b.look(s, e, -8.0, 22.0 * m)
+        b.reach(side, s, e, (-0.12, 0.08, 0.38), arc=0.0)
+        b.reach(other, s + 0.05, e, (-0.08, 0.04, 0.58), arc=0.0)
+
+    guard(t - 0.15, t + ready)
     start = t
     t += ready + 0.1
     kind = b.rng.choice(["straight", "straight", "hook", "upper"])
     for _ in range(times):
-        back, out, home_ = b.beat(0.16), b.beat(0.23), b.beat(0.34)
-        far = 0.95 * who.arm + 0.14 * k
-        high = {"straight": 0.80, "hook": 0.82, "upper": 0.86}[kind] * who.height + b.vary(0.0, 0.03)
-        hit: Vector = (
-            b.vary(0.04, 0.02),
-            high,
-            far * (0.8 if kind != "straight" else 1.0) * b.vary(1.0, 0.03),
-        )
-        if kind == "hook":
-            hit = (0.16 * k, high, hit[2])
-        b.reach("r", t, t + back, (-0.06, 0.02 if kind != "upper" else -0.25, 0.28), arc=0.0)
-        b.turn(t, t + back, -33.0, 4.0, 0.0)
-        b.trunk(t, t + back, 7.0, 0.0, -4.0)
+        back, out, again = b.beat(0.16), b.beat(0.23), b.beat(0.34)
+        if bounce:
+            b.pelvis(t, t + 0.8 * back, -0.02 * m, low - 0.02, 0.0)
+        high = {"straight": 0.80, "hook": 0.82, "upper": 0.86}[kind] * who.height + b.vary(0.0, 0.05) * k
+        far = (0.95 * who.arm + 0.14 * k) * (1.0 if kind == "straight" else 0.8) * b.vary(1.0, 0.04)
+        across = 0.16 * k if kind == "hook" else b.vary(0.04, 0.04)
+        out *= 1.35 if kind == "hook" else 1.0
+        b.reach(side, t, t + back, (-0.06, -0.25 if kind == "upper" else 0.02, 0.28), arc=0.0)
+        b.turn(t, t + back, -33.0 * m, 4.0, 0.0)
+        b.trunk(t, t + back, 7.0, 0.0, -4.0 * m)
         t += back
-        b.turn(t - 0.04, t + 0.9 * out, 8.0 * who.size, 5.0, 0.0)
-        b.trunk(t - 0.02, t + out, 9.0, 0.0, 34.0 * who.size)
-        b.look(t, t + out, -8.0, -22.0)
-        b.pelvis(t - 0.04, t + out, 0.02, low - 0.01, 0.07 * k)
-        b.move("r_sole", t - 0.04, t + out, (b.heading - 14.0, 24.0))
+        b.turn(t - 0.04, t + 0.9 * out, 8.0 * m * who.size, 5.0, 0.0)
+        b.trunk(t - 0.02, t + out, 9.0, 0.0, 34.0 * m * who.size)
+        b.look(t, t + out, -8.0, -22.0 * m)
+        b.pelvis(t - 0.04, t + out, 0.02 * m, low - 0.01, 0.07 * k)
+        b.move(f"{side}_sole", t - 0.04, t + out, (b.heading - 14.0 * m, 24.0))
         if kind == "hook":
-            b.move("r_swivel", t, t + out, (55.0,))
-            b.reach("r", t, t + out, hit, "stage", arc=0.12)
-        else:
-            b.reach("r", t, t + out, hit, "stage", arc=-0.05 if kind == "upper" else 0.0)
-        b.reach("l", t, t + out, (-0.1, 0.1, 0.4), arc=0.0)
+            b.move(f"{side}_swivel", t, t + out, (55.0,))
+        arc = {"straight": 0.0, "hook": 0.12, "upper": -0.05}[kind]
+        b.reach(side, t, t + out, (m * across, high, far), "stage", arc=arc)
+        b.reach(other, t, t + out, (-0.1, 0.1, 0.4), arc=0.0)
         t += out + 0.03
-        b.reach("r", t, t + home_, guard["r"], arc=0.0)
-        b.move("r_swivel", t, t + home_, (0.0,))
-        b.reach("l", t + 0.05, t + home_, guard["l"], arc=0.0)
-        b.turn(t, t + home_, -28.0, 4.0, 0.0)
-        b.trunk(t, t + home_, 7.0, 0.0, 4.0)
-        b.look(t, t + home_, -8.0, 22.0)
-        b.pelvis(t, t + home_, 0.0, low, 0.02)
-        b.move("r_sole", t, t + home_, (b.heading - who.toe_out - 32.0, 0.0))
-        t += home_ + abs(b.vary(0.12, 0.08))
+        guard(t, t + again)
+        b.move(f"{side}_swivel", t, t + again, (0.0,))
+        b.move(f"{side}_sole", t, t + again, (b.heading + b.out(side) * who.toe_out + toes[side], 0.0))
+        t += again + abs(b.vary(0.12, 0.08))
     b.now = t
     b.relax(t, t + b.beat(0.55))
     home(b)

@@ -30,6 +30,12 @@ OTHERS = (
     "pick up",
     "clap",
     "reach up",
+    "left punch",
+    "phone call",
+    "scratch head",
+    "mop floor",
+    "jumping jacks",
+    "stretch",
     "sit down",
     "stand up",
     "go down 2 steps",
@@ -42,29 +48,36 @@ PERFORMERS = ("ash", "birch", "cedar", "elm", "fir", "holly")
 _TAKES = 7  # of each performer
 _SHARE = 4  # performers of each keyword
 _TIMES = 2  # each of them
+_FREE = 10  # other motions of each performer
 
 # Seconds that a motion takes, with its way there and back: first figure once, second for each repetition.
 # Fitted to some 60 performances of each; a test holds them to what is performed.
 SECONDS = {
-    "right punch": (2.0, 0.95),
-    "squats": (1.8, 1.99),
-    "wash window 1": (3.4, 1.19),
-    "wash window 2": (3.0, 1.18),
-    "side twists": (2.3, 1.57),
-    "climb 2 steps": (5.2, 0.0),
-    "point by right hand": (0.7, 1.35),
-    "sit on high stool": (5.3, 0.0),
-    "sit and swing legs": (4.3, 0.49),
-    "hand on chin": (5.5, 0.0),
-    "drink soda": (1.2, 2.6),
-    "walk": (0.2, 0.64),
-    "wave": (1.4, 0.48),
-    "throw": (2.5, 0.0),
-    "kick": (0.1, 1.4),
+    "right punch": (2.6, 0.85),
+    "squats": (1.7, 2.17),
+    "wash window 1": (2.0, 1.54),
+    "wash window 2": (1.7, 1.52),
+    "side twists": (2.6, 1.52),
+    "climb 2 steps": (5.3, 0.0),
+    "point by right hand": (0.4, 1.47),
+    "sit on high stool": (5.0, 0.0),
+    "sit and swing legs": (3.7, 0.61),
+    "hand on chin": (5.3, 0.0),
+    "drink soda": (1.3, 2.68),
+    "walk": (1.0, 0.54),
+    "wave": (0.9, 0.62),
+    "throw": (3.0, 0.0),
+    "kick": (0.0, 1.45),
     "bow": (2.2, 0.0),
-    "pick up": (2.8, 0.0),
-    "clap": (1.6, 0.31),
-    "reach up": (0.2, 2.32),
+    "pick up": (2.9, 0.0),
+    "clap": (0.8, 0.44),
+    "reach up": (0.0, 2.48),
+    "left punch": (2.5, 0.85),
+    "phone call": (4.2, 0.0),
+    "scratch head": (1.7, 0.23),
+    "mop floor": (3.5, 1.03),
+    "jumping jacks": (0.2, 1.14),
+    "stretch": (3.0, 2.41),
 }
 REPETITIONS = {
     "right punch": (2, 4),
@@ -81,6 +94,11 @@ REPETITIONS = {
     "bow": (1, 1),
     "clap": (4, 8),
     "reach up": (1, 2),
+    "left punch": (1, 3),
+    "scratch head": (3, 6),
+    "mop floor": (2, 4),
+    "jumping jacks": (3, 5),
+    "stretch": (1, 2),
 }
 
 
@@ -119,12 +137,13 @@ def plan(seed: int, small: bool = False) -> list[Plan]:
     """
     rng = random.Random(f"everyday/{seed}/{small}")
     free = [k for k in OTHERS if k in SECONDS]
+    performers = PERFORMERS[:2] if small else PERFORMERS
     if small:
-        performers, takes = PERFORMERS[:2], 3
+        takes = 3
         wanted = {p: list(KEYWORDS) for p in performers}
     else:
-        performers, takes = PERFORMERS, _TAKES
-        wanted = {p: list(free) + rng.sample(free, 3) for p in performers}
+        takes = _TAKES
+        wanted = {p: [free[(3 * i + k) % len(free)] for k in range(_FREE)] for i, p in enumerate(performers)}
         for number, keyword in enumerate(KEYWORDS):
             for k in range(_SHARE):  # each performer has about as much to do as any other
                 wanted[performers[(number + k) % len(performers)]] += [keyword] * _TIMES

@@ -44,7 +44,8 @@ class Score:
     """What one performer does in one take, in the order of time.
 
     `now` is the time reached; `x`, `z` and `heading` (degrees, to the left) are where the performer's own
-    frame stands (x to the left, y up, z ahead), `floor` the height under the feet.
+    frame stands (x to the left, y up, z ahead), `floor` the height under the feet; `hand` is
+    the side that acts where either could.
     """
 
     who: Person
@@ -54,6 +55,7 @@ class Score:
     z: float = 0.0
     heading: float = 0.0
     floor: float = 0.0
+    hand: str = "r"
     tracks: dict[str, list[Key]] = field(default_factory=dict)
     home_feet: dict[str, Vector] = field(default_factory=dict)
     air: dict[str, list[tuple[float, float]]] = field(default_factory=lambda: {"l": [], "r": []})
@@ -98,11 +100,6 @@ class Score:
     def out(side: str) -> float:
         """+1 to the left, −1 to the right: the sign of outwards."""
         return 1.0 if side == "l" else -1.0
-
-    @property
-    def hand(self) -> str:
-        """The side of the hand that the performer prefers."""
-        return "l" if self.who.left_handed else "r"
 
     def other(self, side: str) -> str:
         """The other side."""

@@ -12,13 +12,14 @@ from miburi import formats, store
 from miburi.errors import InputError
 from miburi.formats.annotations import Annotation, write_annotations
 from miburi.motion import Motion
-from miburi.perform.bodies import actions, gestures, steps
+from miburi.perform.bodies import actions, extras, gestures, steps
 from miburi.perform.bodies.body import FPS, embody
 from miburi.perform.bodies.people import person
 from miburi.perform.bodies.programme import KEYWORDS, REPETITIONS, Clip, Plan, plan
 from miburi.perform.bodies.score import Score
 
 Done = list[tuple[str, float, float]]
+_OTHER_HAND = 0.15  # of the motions that either hand could do
 
 
 def _single(keyword: str, motion: Callable[[Score, int], gestures.Span]) -> Callable[[Score, int], Done]:
@@ -72,6 +73,12 @@ MOTIONS: Mapping[str, Callable[[Score, int], Done]] = {
     "pick up": _single("pick up", lambda b, n: actions.pick_up(b)),
     "clap": _single("clap", gestures.clap),
     "reach up": _single("reach up", gestures.reach_up),
+    "left punch": _single("left punch", lambda b, n: gestures.punch(b, n, "l")),
+    "phone call": _single("phone call", lambda b, n: extras.phone(b)),
+    "scratch head": _single("scratch head", extras.scratch),
+    "mop floor": _single("mop floor", extras.mop),
+    "jumping jacks": _single("jumping jacks", extras.jacks),
+    "stretch": _single("stretch", extras.stretch),
 }
 """Keyword → what adds it to a score: (score, repetitions) → [(keyword, start, end) …]."""
 
@@ -84,11 +91,17 @@ def compose(entry: Plan, seed: int) -> tuple[Score, Done]:
     done: Done = []
     for number, clip in enumerate(entry.clips):
         b.rng = store.seed(seed, "everyday", entry.take, number, clip.variant)
+        b.hand = _hand(b)
         if number:
             _between(b)
         done += MOTIONS[clip.keyword](b, clip.repetitions)
     b.now += float(b.rng.uniform(0.2, 0.5))
     return b, done
+
+
+def _hand(b: Score) -> str:
+    """The hand of a motion that either could do: mostly the one that its performer prefers."""
+    return "rl"[int(b.who.left_handed != (b.rng.random() < _OTHER_HAND))]
 
 
 def _between(b: Score) -> None:
