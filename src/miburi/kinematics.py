@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from miburi.errors import InputError
 from miburi.motion import Floats, Motion
 
 
@@ -24,11 +26,12 @@ def quaternions(rotation_matrices: ArrayLike) -> Floats:
 def euler(angles: ArrayLike, order: str, *, degrees: bool = True) -> Floats:
     """Quaternions (…, 4) of intrinsic Euler angles (…, 3) in the order given, as "ZXY" (R = Rz Rx Ry)."""
     a = np.asarray(angles, dtype=np.float64)
-    return Rotation.from_euler(order.upper(), a.reshape(-1, 3), degrees=degrees).as_quat().reshape(*a.shape[:-1], 4)
+    turns = Rotation.from_euler(order.upper(), a.reshape(-1, 3), degrees=degrees)
+    return np.asarray(turns.as_quat()).reshape(*a.shape[:-1], 4)
 
 
 def forward(motion: Motion) -> tuple[Floats, Floats]:
-    """Forward kinematics of all frames at once, one step per joint.
+    """Forward kinematics: each joint's place and rotation are its parent's, moved by its own.
 
     Returns
     -------
@@ -36,30 +39,76 @@ def forward(motion: Motion) -> tuple[Floats, Floats]:
         Metres, world frame.
     orientations : (T, J, 3, 3) float64
         Rotation of each joint's frame in the world.
+
+    Raises
+    ------
+    InputError
+        A rotation is a quaternion of length zero.
     """
     skeleton = motion.skeleton
-    local = matrices(motion.rotations)
+    steps = skeleton.offsets[None]
+    if motion.translations is not None:
+        steps = steps + motion.translations
     positions = np.empty((len(motion), len(skeleton), 3))
-    world = np.empty_like(local)
-    positions[:, 0] = motion.root + skeleton.offsets[0]
-    world[:, 0] = local[:, 0]
-    for j in range(1, len(skeleton)):
-        p = skeleton.parents[j]
-        offset = skeleton.offsets[j]
-        if motion.translations is None:
-            positions[:, j] = positions[:, p] + world[:, p] @ offset
-        else:
-            step = offset + motion.translations[:, j]
-            positions[:, j] = positions[:, p] + np.einsum("tab,tb->ta", world[:, p], step)
-        world[:, j] = world[:, p] @ local[:, j]
+    world = np.empty((len(motion), len(skeleton), 3, 3))
+    start = motion.root + skeleton.offsets[0]
+    bad = int(_chain(skeleton.parents, steps, start, motion.rotations, positions, world))
+    if bad >= 0:
+        t, j = divmod(bad, len(skeleton))
+        raise InputError(
+            f"take {motion.name!r}, frame {t}: joint {skeleton.joints[j]!r} has a quaternion of length zero"
+        )
     return positions, world
+
+
+@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator, unused-ignore]
+def _chain(
+    parents: NDArray[np.int32],
+    steps: Floats,
+    start: Floats,
+    rotations: Floats,
+    positions: Floats,
+    world: Floats,
+) -> int:
+    """Fill positions and world, frame by frame.
+
+    Returns frame · J + joint of the first quaternion of length zero, or −1 if there is none.
+    `steps` is (1, J, 3), the same in all frames, or (T, J, 3); `start` (T, 3) is where the root joint is.
+    """
+    local = np.empty((3, 3))
+    for t in range(len(start)):
+        own = t if len(steps) > 1 else 0
+        for j in range(len(parents)):
+            x, y, z, w = rotations[t, j]
+            square = x * x + y * y + z * z + w * w
+            if square == 0.0:
+                return t * len(parents) + j
+            s = 2.0 / square
+            local[0, :] = 1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)
+            local[1, :] = s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)
+            local[2, :] = s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)
+            p = parents[j]
+            if p < 0:
+                positions[t, j] = start[t]
+                world[t, j] = local
+                continue
+            for a in range(3):
+                place = positions[t, p, a]
+                for b in range(3):
+                    place += world[t, p, a, b] * steps[own, j, b]
+                    turn = 0.0
+                    for c in range(3):
+                        turn += world[t, p, a, c] * local[c, b]
+                    world[t, j, a, b] = turn
+                positions[t, j, a] = place
+    return -1
 
 
 def ends(motion: Motion) -> Floats:
     """Where the ends of the outermost bones are: (T, E, 3) float64, metres, world frame."""
     positions, world = forward(motion)
     e = motion.skeleton.ends
-    return positions[:, e] + np.einsum("teab,eb->tea", world[:, e], motion.skeleton.end_offsets)
+    return np.asarray(positions[:, e] + np.einsum("teab,eb->tea", world[:, e], motion.skeleton.end_offsets))
 
 
 def hand_rotations(angles: ArrayLike) -> Floats:
@@ -144,7 +193,7 @@ def resample(motion: Motion, fps: float) -> Motion:
         if x is None:
             return None
         w = u.reshape(-1, *([1] * (x.ndim - 1)))
-        return (1 - w) * x[i] + w * x[i + 1]
+        return np.asarray((1 - w) * x[i] + w * x[i + 1])
 
     a, b = motion.rotations[i], motion.rotations[i + 1]
     step = (Rotation.from_quat(a.reshape(-1, 4)).inv() * Rotation.from_quat(b.reshape(-1, 4))).as_rotvec()
@@ -153,5 +202,10 @@ def resample(motion: Motion, fps: float) -> Motion:
     root = linear(motion.root)
     assert root is not None
     return replace(
-        motion, fps=fps, root=root, rotations=q, translations=linear(motion.translations), angles=linear(motion.angles)
+        motion,
+        fps=fps,
+        root=root,
+        rotations=q,
+        translations=linear(motion.translations),
+        angles=linear(motion.angles),
     )
