@@ -73,9 +73,9 @@ class Flow:
             for name, corpus in self.config.corpora.items()
         }
 
-    def performed(self) -> list[str]:
-        """Names of the simulated corpora."""
-        return [name for name, corpus in self.config.corpora.items() if corpus.perform]
+    def performed(self, by: str) -> list[str]:
+        """Names of the corpora that a simulation performs."""
+        return [name for name, corpus in self.config.corpora.items() if corpus.perform == by]
 
     def performance(self, corpus: str) -> list[str]:
         """Files of a simulated corpus."""
@@ -295,6 +295,11 @@ class Flow:
 def one_of(names: Iterable[str]) -> str:
     """A wildcard's pattern: one of these names, or nothing at all."""
     return "|".join(re.escape(name) for name in names) or "(?!)"
+
+
+def none_of(names: Iterable[str]) -> str:
+    """A wildcard's pattern: a name, but none of these."""
+    return f"(?!({one_of(names)})$)[^/]+"
 
 
 def plan(config: Mapping[str, Any]) -> Flow:

@@ -7,7 +7,9 @@ from miburi import corpora, flow
 from miburi.code import code_digest
 
 # one thread in each sum, so that the same inputs give the same bytes; jobs are what runs side by side
-os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"))
+os.environ.update(
+    dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+)
 
 SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
 FLOW = flow.plan(config)
@@ -21,7 +23,7 @@ wildcard_constraints:
     string=flow.one_of(CONFIG.strings),
     measure="[^/]+",
     label="[^/]+",
-    name="[^/]+",
+    name=flow.none_of(CONFIG.strings),
     query="[^/]+",
 
 

@@ -11,12 +11,14 @@ rule features:
         "results/logs/features/{corpus}/{shard}.log",
     benchmark:
         "results/benchmarks/features/{corpus}/{shard}.tsv"
-    params:
-        joints=lambda wildcards: FLOW.per_take(wildcards.corpus, wildcards.shard, "joints"),
-        settings=CONFIG.features.model_dump(),
-        code=code("features.py"),
     resources:
         mem_mb=megabytes(600, 40),
         runtime=minutes(5, 0.1),
+    params:
+        joints=lambda wildcards: FLOW.per_take(
+            wildcards.corpus, wildcards.shard, "joints"
+        ),
+        settings=CONFIG.features.model_dump(),
+        code=code("features.py"),
     script:
         "../scripts/features.py"

@@ -10,13 +10,13 @@ rule index:
         "results/logs/index/{corpus}.log",
     benchmark:
         "results/benchmarks/index/{corpus}.tsv"
+    resources:
+        mem_mb=megabytes(600, 10),
+        runtime=minutes(5, 0.1),
     params:
         dims=CONFIG.index.dims,
         samples=CONFIG.index.samples,
         seed=CONFIG.seed,
         code=code("index.py"),
-    resources:
-        mem_mb=megabytes(600, 10),
-        runtime=minutes(5, 0.1),
     script:
         "../scripts/index.py"

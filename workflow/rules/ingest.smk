@@ -11,13 +11,13 @@ rule ingest:
         "results/logs/ingest/{corpus}/{shard}.log",
     benchmark:
         "results/benchmarks/ingest/{corpus}/{shard}.tsv"
+    resources:
+        mem_mb=megabytes(500, 30),
+        runtime=minutes(5, 0.1),
     params:
         reading=lambda wildcards: FLOW.to_read(wildcards.corpus, wildcards.shard),
         on_error=CONFIG.on_error,
         code=code("ingest.py"),
-    resources:
-        mem_mb=megabytes(500, 30),
-        runtime=minutes(5, 0.1),
     script:
         "../scripts/ingest.py"
 
@@ -34,11 +34,11 @@ rule annotations:
         "results/logs/annotations/{corpus}.log",
     benchmark:
         "results/benchmarks/annotations/{corpus}.tsv"
-    params:
-        reading=lambda wildcards: FLOW.to_annotate(wildcards.corpus),
-        code=code("annotations.py"),
     resources:
         mem_mb=megabytes(500),
         runtime=minutes(5, 0.01),
+    params:
+        reading=lambda wildcards: FLOW.to_annotate(wildcards.corpus),
+        code=code("annotations.py"),
     script:
         "../scripts/annotations.py"

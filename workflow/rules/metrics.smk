@@ -19,11 +19,11 @@ rule metrics:
         "results/logs/metrics/metrics.log",
     benchmark:
         "results/benchmarks/metrics/metrics.tsv"
-    params:
-        code=code("metrics.py"),
     resources:
         mem_mb=megabytes(600),
         runtime=minutes(5),
+    params:
+        code=code("metrics.py"),
     script:
         "../scripts/metrics.py"
 
@@ -33,11 +33,11 @@ rule check:
         "results/metrics.json",
     log:
         "results/logs/metrics/check.log",
-    params:
-        baseline=CONFIG.baseline,
     resources:
         mem_mb=megabytes(300),
         runtime=minutes(5),
+    params:
+        baseline=CONFIG.baseline,
     script:
         "../scripts/check.py"
 
@@ -47,10 +47,10 @@ rule accept:
         "results/metrics.json",
     log:
         "results/logs/metrics/accept.log",
-    params:
-        baseline=CONFIG.baseline,
     resources:
         mem_mb=megabytes(300),
         runtime=minutes(5),
+    params:
+        baseline=CONFIG.baseline,
     script:
         "../scripts/accept.py"

@@ -1,6 +1,6 @@
 # What stands in for people: simulated recordings in the devices' own formats, and the download of real ones.
 
-for _name in FLOW.performed():
+for _name in FLOW.performed("janken"):
 
     rule:
         name:
@@ -11,16 +11,37 @@ for _name in FLOW.performed():
             f"results/logs/perform/{_name}.log",
         benchmark:
             f"results/benchmarks/perform/{_name}.tsv"
+        resources:
+            mem_mb=megabytes(800),
+            runtime=minutes(5),
         params:
-            perform=FLOW.corpus(_name).perform,
             small=FLOW.corpus(_name).small,
             seed=CONFIG.seed,
-            code=code(f"perform_{FLOW.corpus(_name).perform}.py"),
+            code=code("perform_janken.py"),
+        script:
+            "../scripts/perform_janken.py"
+
+
+for _name in FLOW.performed("everyday"):
+
+    rule:
+        name:
+            f"perform_{_name}"
+        output:
+            FLOW.performance(_name),
+        log:
+            f"results/logs/perform/{_name}.log",
+        benchmark:
+            f"results/benchmarks/perform/{_name}.tsv"
         resources:
             mem_mb=megabytes(1500),
             runtime=minutes(20),
+        params:
+            small=FLOW.corpus(_name).small,
+            seed=CONFIG.seed,
+            code=code("perform_everyday.py"),
         script:
-            f"../scripts/perform_{FLOW.corpus(_name).perform}.py"
+            "../scripts/perform_everyday.py"
 
 
 for _name, _subject in FLOW.fetched():
@@ -34,13 +55,13 @@ for _name, _subject in FLOW.fetched():
             f"results/logs/fetch/{_name}/{_subject}.log",
         benchmark:
             f"results/benchmarks/fetch/{_name}/{_subject}.tsv"
+        resources:
+            mem_mb=megabytes(500),
+            runtime=minutes(120),
         params:
             site=FLOW.corpus(_name).site,
             subject=_subject,
             code=code("fetch.py"),
-        resources:
-            mem_mb=megabytes(500),
-            runtime=minutes(120),
         script:
             "../scripts/fetch.py"
 
@@ -58,12 +79,12 @@ rule queries:
         "results/logs/queries/{corpus}/{experiment}.log",
     benchmark:
         "results/benchmarks/queries/{corpus}/{experiment}.tsv"
+    resources:
+        mem_mb=megabytes(1000, 10),
+        runtime=minutes(20, 0.1),
     params:
         experiment=lambda wildcards: FLOW.to_play(wildcards.experiment),
         seed=CONFIG.seed,
         code=code("queries.py"),
-    resources:
-        mem_mb=megabytes(1000, 10),
-        runtime=minutes(20, 0.1),
     script:
         "../scripts/queries.py"

@@ -11,12 +11,12 @@ rule query_features:
         "results/logs/query_features/{corpus}/{experiment}.log",
     benchmark:
         "results/benchmarks/query_features/{corpus}/{experiment}.tsv"
-    params:
-        settings=CONFIG.features.model_dump(),
-        code=code("query_features.py"),
     resources:
         mem_mb=megabytes(800, 20),
         runtime=minutes(10, 0.1),
+    params:
+        settings=CONFIG.features.model_dump(),
+        code=code("query_features.py"),
     script:
         "../scripts/query_features.py"
 
@@ -33,12 +33,12 @@ rule rank:
         "results/logs/rank/{corpus}/{experiment}/{measure}.log",
     benchmark:
         "results/benchmarks/rank/{corpus}/{experiment}/{measure}.tsv"
-    params:
-        reduction=CONFIG.index.reduction,
-        code=code("rank.py"),
     resources:
         mem_mb=megabytes(1000, 10),
         runtime=minutes(10, 1),
+    params:
+        reduction=CONFIG.index.reduction,
+        code=code("rank.py"),
     script:
         "../scripts/rank.py"
 
@@ -54,14 +54,16 @@ rule search:
         "results/logs/search/{corpus}/{query}.log",
     benchmark:
         "results/benchmarks/search/{corpus}/{query}.tsv"
-    params:
-        measure=CONFIG.search_measure,
-        simulated=lambda wildcards: FLOW.simulated_log(wildcards.corpus, wildcards.query),
-        reduction=CONFIG.index.reduction,
-        settings=CONFIG.features.model_dump(),
-        code=code("search.py"),
     resources:
         mem_mb=megabytes(1000, 10),
         runtime=minutes(10, 0.1),
+    params:
+        measure=CONFIG.search_measure,
+        simulated=lambda wildcards: FLOW.simulated_log(
+            wildcards.corpus, wildcards.query
+        ),
+        reduction=CONFIG.index.reduction,
+        settings=CONFIG.features.model_dump(),
+        code=code("search.py"),
     script:
         "../scripts/search.py"

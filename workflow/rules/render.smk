@@ -11,13 +11,13 @@ rule film_string:
         "results/logs/render/{corpus}/{string}.log",
     benchmark:
         "results/benchmarks/render/{corpus}/{string}.tsv"
+    resources:
+        mem_mb=megabytes(1500),
+        runtime=minutes(15),
     params:
         simulated=lambda wildcards: FLOW.simulated(wildcards.corpus),
         settings=CONFIG.render.model_dump(),
         code=code("film_string.py"),
-    resources:
-        mem_mb=megabytes(1500),
-        runtime=minutes(15),
     script:
         "../scripts/film_string.py"
 
@@ -32,16 +32,13 @@ rule film_take:
         "results/logs/render/{corpus}/{name}.log",
     benchmark:
         "results/benchmarks/render/{corpus}/{name}.tsv"
+    resources:
+        mem_mb=megabytes(1500, 30),
+        runtime=minutes(30),
     params:
         stretch=lambda wildcards: FLOW.stretch(wildcards.corpus, wildcards.name),
         simulated=lambda wildcards: FLOW.simulated(wildcards.corpus),
         settings=CONFIG.render.model_dump(),
         code=code("film_take.py"),
-    resources:
-        mem_mb=megabytes(1500, 30),
-        runtime=minutes(30),
     script:
         "../scripts/film_take.py"
-
-
-ruleorder: film_string > film_take

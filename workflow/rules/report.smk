@@ -16,11 +16,11 @@ rule page:
         "results/logs/report/page.log",
     benchmark:
         "results/benchmarks/report/page.tsv"
-    params:
-        corpora=FLOW.described(),
-        code=code("page.py"),
     resources:
         mem_mb=megabytes(600, 5),
         runtime=minutes(5),
+    params:
+        corpora=FLOW.described(),
+        code=code("page.py"),
     script:
         "../scripts/page.py"

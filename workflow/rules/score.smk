@@ -14,10 +14,10 @@ rule score:
         "results/logs/score/{corpus}/{experiment}.log",
     benchmark:
         "results/benchmarks/score/{corpus}/{experiment}.tsv"
-    params:
-        code=code("score.py"),
     resources:
         mem_mb=megabytes(800, 5),
         runtime=minutes(10),
+    params:
+        code=code("score.py"),
     script:
         "../scripts/score.py"

@@ -10,13 +10,15 @@ rule segment:
         "results/logs/segment/{corpus}/{shard}.log",
     benchmark:
         "results/benchmarks/segment/{corpus}/{shard}.tsv"
-    params:
-        cut=lambda wildcards: FLOW.per_take(wildcards.corpus, wildcards.shard, "cut"),
-        joints=lambda wildcards: FLOW.per_take(wildcards.corpus, wildcards.shard, "joints"),
-        settings=CONFIG.segment.model_dump(),
-        code=code("segment.py"),
     resources:
         mem_mb=megabytes(600, 30),
         runtime=minutes(10, 1),
+    params:
+        cut=lambda wildcards: FLOW.per_take(wildcards.corpus, wildcards.shard, "cut"),
+        joints=lambda wildcards: FLOW.per_take(
+            wildcards.corpus, wildcards.shard, "joints"
+        ),
+        settings=CONFIG.segment.model_dump(),
+        code=code("segment.py"),
     script:
         "../scripts/segment.py"

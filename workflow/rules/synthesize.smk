@@ -4,7 +4,8 @@
 rule synthesize:
     input:
         lambda wildcards: [
-            f"results/{wildcards.corpus}/models/{label}.h5" for label in FLOW.labels(wildcards.string)
+            f"results/{wildcards.corpus}/models/{label}.h5"
+            for label in FLOW.labels(wildcards.string)
         ],
     output:
         "results/{corpus}/synthesis/{string}.h5",
@@ -12,12 +13,12 @@ rule synthesize:
         "results/logs/synthesize/{corpus}/{string}.log",
     benchmark:
         "results/benchmarks/synthesize/{corpus}/{string}.tsv"
-    params:
-        string=lambda wildcards: FLOW.string(wildcards.string),
-        code=code("synthesize.py"),
     resources:
         mem_mb=megabytes(600),
         runtime=minutes(5),
+    params:
+        string=lambda wildcards: FLOW.string(wildcards.string),
+        code=code("synthesize.py"),
     script:
         "../scripts/synthesize.py"
 
@@ -33,12 +34,12 @@ rule lengths:
         "results/logs/lengths/{corpus}/{string}.log",
     benchmark:
         "results/benchmarks/lengths/{corpus}/{string}.tsv"
+    resources:
+        mem_mb=megabytes(800, 60),
+        runtime=minutes(10, 1),
     params:
         string=lambda wildcards: FLOW.string(wildcards.string),
         settings=CONFIG.train.model_dump(),
         code=code("lengths.py"),
-    resources:
-        mem_mb=megabytes(800, 60),
-        runtime=minutes(10, 1),
     script:
         "../scripts/lengths.py"

@@ -17,13 +17,13 @@ for _table, _experiment in FLOW.filled_tables().items():
             f"results/logs/tables/{_table}.log",
         benchmark:
             f"results/benchmarks/tables/{_table}.tsv"
+        resources:
+            mem_mb=megabytes(600),
+            runtime=minutes(5),
         params:
             table=_table,
             seed=CONFIG.seed,
             code=code("tables.py"),
-        resources:
-            mem_mb=megabytes(600),
-            runtime=minutes(5),
         script:
             "../scripts/tables.py"
 
@@ -44,12 +44,12 @@ if CONFIG.tables.string:
             "results/logs/tables/label_counts.log",
         benchmark:
             "results/benchmarks/tables/label_counts.tsv"
-        params:
-            simulated=FLOW.simulated(FLOW.shown_corpus()),
-            code=code("label_counts.py"),
         resources:
             mem_mb=megabytes(500),
             runtime=minutes(5),
+        params:
+            simulated=FLOW.simulated(FLOW.shown_corpus()),
+            code=code("label_counts.py"),
         script:
             "../scripts/label_counts.py"
 
@@ -73,12 +73,12 @@ if CONFIG.tables.string:
             "results/logs/figures/curves.log",
         benchmark:
             "results/benchmarks/figures/curves.tsv"
-        params:
-            simulated=FLOW.simulated(FLOW.shown_corpus()),
-            code=code("curves.py"),
         resources:
             mem_mb=megabytes(800, 30),
             runtime=minutes(5),
+        params:
+            simulated=FLOW.simulated(FLOW.shown_corpus()),
+            code=code("curves.py"),
         script:
             "../scripts/curves.py"
 
@@ -95,12 +95,12 @@ if CONFIG.tables.string:
             "results/logs/figures/strips.log",
         benchmark:
             "results/benchmarks/figures/strips.tsv"
+        resources:
+            mem_mb=megabytes(1500),
+            runtime=minutes(10),
         params:
             changes=FLOW.changes(),
             simulated=FLOW.simulated(FLOW.shown_corpus()),
             code=code("strips.py"),
-        resources:
-            mem_mb=megabytes(1500),
-            runtime=minutes(10),
         script:
             "../scripts/strips.py"

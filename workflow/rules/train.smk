@@ -11,11 +11,11 @@ rule train:
         "results/logs/train/{corpus}/{label}.log",
     benchmark:
         "results/benchmarks/train/{corpus}/{label}.tsv"
-    params:
-        settings=CONFIG.train.model_dump(),
-        code=code("train.py"),
     resources:
         mem_mb=megabytes(600, 60),
         runtime=minutes(10, 1),
+    params:
+        settings=CONFIG.train.model_dump(),
+        code=code("train.py"),
     script:
         "../scripts/train.py"
