@@ -4,37 +4,52 @@
 # make bench    speed against other people's implementations
 # make lint     what CI checks beside the tests
 # make lock     fix versions and hashes anew (needs a network)
+# make clean    remove .venv and caches; results and recordings stay
+#
+# make CORES=4 PYTHON=/usr/local/bin/python3.12 ... for other than all cores and the first Python found
 
-PYTHON ?= python3
+NEW_ENOUGH := import sys; sys.exit(sys.version_info < (3, 11))
+PYTHON ?= $(shell for p in python3.11 python3 python3.12 python3.13; do \
+	$$p -c '$(NEW_ENOUGH)' 2>/dev/null && echo $$p && break; done)
 VENV := .venv
 BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 CORES ?= all
+BENCHMARKS ?= $(wildcard benchmarks/bench_*.py)
 
-.PHONY: all setup test bench lint lock
+.PHONY: all setup system test bench lint lock clean
 
 all: setup
 	$(BIN)/snakemake --cores $(CORES)
 
-setup: $(VENV)/.complete
-	@sh tools/system-packages.sh
+setup: system $(VENV)/.complete
 
-# the stamp is the last thing that is written, so a set-up that was cut off is done again
-$(VENV)/.complete: requirements.lock pyproject.toml
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
-		{ echo "miburi needs Python 3.11 or later, $(PYTHON) is $$($(PYTHON) -V 2>&1); try make PYTHON=python3.11" >&2; exit 1; }
-	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
-		{ echo "the modules venv and ensurepip are missing; on Debian: apt-get install python3-venv" >&2; exit 1; }
-	rm -rf $(VENV)
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+system:
+	@[ -n "$(PYTHON)" ] || { echo "miburi needs Python 3.11 or later and found none;" \
+		"name one: make PYTHON=/path/to/python3.11" >&2; exit 1; }
+	@$(PYTHON) -c '$(NEW_ENOUGH)' || { echo "miburi needs Python 3.11 or later," \
+		"$(PYTHON) is not: make PYTHON=/path/to/python3.11" >&2; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { echo "$(PYTHON) has no module venv or ensurepip;" \
+		"on Debian and Ubuntu: sudo apt-get install python3-venv" >&2; exit 1; }
+	@PYTHON=$(PYTHON) sh tools/system-packages.sh
+
+# The copy of the lock is the last thing that is written: a set-up that was cut off begins again from nothing.
+# A changed lock is installed over what is there; a lock that is only newer costs nothing.
+$(VENV)/.lock: requirements.lock | system
+	@if [ ! -e $@ ]; then rm -rf $(VENV) && $(PYTHON) -m venv $(VENV); fi
+	@if cmp -s $< $@; then touch $@; else \
+		echo "installing requirements.lock into $(VENV): a minute or two"; rm -f $@; \
+		$(PIP) install --no-deps --require-hashes -r $< && cp $< $@.part && mv $@.part $@; fi
+
+$(VENV)/.complete: $(VENV)/.lock pyproject.toml
+	@$(PIP) install --no-deps --no-build-isolation --editable .
 	@touch $@
 
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
 bench: setup
-	@for bench in benchmarks/bench_*.py; do echo; echo "## $$bench"; $(BIN)/python $$bench || exit 1; done
+	@for bench in $(BENCHMARKS); do echo; echo "## $$bench"; $(BIN)/python $$bench || exit 1; done
 
 lint: setup
 	$(BIN)/ruff check .
@@ -45,9 +60,13 @@ lint: setup
 	$(BIN)/python tools/lint_snakemake.py
 	$(BIN)/python tools/config_docs.py --check
 
-lock:
+lock: | system
 	$(PYTHON) -m venv build/lock
-	build/lock/bin/python -m pip install --quiet uv
+	build/lock/bin/python -m pip install --quiet --disable-pip-version-check uv
 	build/lock/bin/uv pip compile requirements.in --override overrides.txt --upgrade \
 		--python-version 3.11 --python-platform linux --generate-hashes \
 		--no-emit-index-url --no-header --no-annotate --quiet -o requirements.lock
+
+clean:
+	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	@echo "results/, data/raw/ and .snakemake/ are left as they are"
