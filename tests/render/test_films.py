@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import resource
+import signal
+import subprocess
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -32,13 +36,50 @@ def test_other_rates_and_several_figures(tmp_path):
     assert film.decode(tmp_path / "a.mp4")[0] == 15
 
 
-def test_captions_come_and_go(tmp_path):
+def test_words_stand_above_and_below_and_captions_come_and_go(tmp_path):
     motion = fist(9)
-    film.film(tmp_path / "a.mp4", motion, width=160, height=120)
-    film.film(tmp_path / "b.mp4", motion, width=160, height=120, captions=[(0.1, 0.2, "pr")])
-    plain, written = (film.decode(tmp_path / f)[1].astype(np.int16) for f in ("a.mp4", "b.mp4"))
-    corner = np.abs(plain - written)[:, 100:, :40].max(axis=(1, 2, 3))
-    assert (corner[3:6] > 90).all() and (corner[[0, 1, 2, 7, 8]] < 60).all()
+    film.film(
+        tmp_path / "a.mp4", motion, width=160, height=120, title="simulated", captions=[(0.1, 0.2, "pr")]
+    )
+    pictures = film.decode(tmp_path / "a.mp4")[1].astype(np.int16)
+    dark = 255 - pictures.min(axis=-1)
+    assert (dark[:, :17, :80].max(axis=(1, 2)) > 120).all()  # the title, throughout
+    below = dark[:, 106:, :40].max(axis=(1, 2))
+    assert (below[3:6] > 120).all() and (below[[0, 1, 2, 7, 8]] < 40).all()
+    assert (dark[:, 20:100].max(axis=(1, 2)) > 120).all()  # the hand between
+
+
+def test_names_stand_under_their_figures(tmp_path):
+    film.film(tmp_path / "a.mp4", [person(2), fist(2), person(2)], names=["i", "", "i"])
+    picture = film.decode(tmp_path / "a.mp4")[1][0].astype(np.int16)
+    band = np.flatnonzero((255 - picture[448:].min(axis=-1)).max(axis=0) > 120)
+    figures = np.flatnonzero((np.ptp(picture[:440], axis=-1) > 30).any(axis=0))
+    for side in (0, -1):
+        assert abs(band[side] - figures[side]) < 130
+    assert band[0] < 320 < band[-1]
+
+
+def test_a_disk_that_is_full_and_an_ffmpeg_that_fails(tmp_path, monkeypatch):
+    path = tmp_path / "a.mp4"
+    path.write_bytes(b"old")
+    with monkeypatch.context() as patch:
+        patch.setattr(film, "_BIT_EXACT", ("-preset", "none"))
+        with pytest.raises(InputError, match=r"a\.mp4: the film cannot be written \(ffmpeg: .*preset"):
+            film.film(path, fist(3), width=160, height=120)
+
+    popen = subprocess.Popen
+
+    def limited(*arguments, **settings):  # the kernel refuses ffmpeg more than 2 kB, as a full disk would
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (2048, 2048))
+
+        return popen(*arguments, preexec_fn=limit, **settings)
+
+    monkeypatch.setattr(film.subprocess, "Popen", limited)
+    with pytest.raises(InputError, match=r"a\.mp4: the film cannot be written \(ffmpeg: "):
+        film.film(path, fist(60), width=640, height=480)
+    assert path.read_bytes() == b"old" and [p.name for p in tmp_path.iterdir()] == ["a.mp4"]
 
 
 @pytest.mark.parametrize(

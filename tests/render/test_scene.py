@@ -105,7 +105,7 @@ def test_figures_stand_side_by_side():
     np.testing.assert_array_equal(shown.points[2:, 0:15], shown.points[2:3, :15].repeat(3, axis=0))
     # all stand on one ground
     high = person(3)
-    raised = Motion(PERSON, 30, high.root + (0, 1.0, 0), high.rotations)
+    raised = Motion(PERSON, 30, high.root + np.array([0, 1.0, 0]), high.rotations)
     level = figure.group([high, raised]).points[..., 1]
     np.testing.assert_allclose(level[:, 15:], level[:, :15], atol=1e-9)
     # the second one is turned to the camera as the first one is
@@ -127,6 +127,11 @@ def test_a_root_on_the_floor_is_not_drawn():
     assert len(shown.bones) == len(plain.bones)
     np.testing.assert_allclose(shown.points[:, 1:], plain.points)
     np.testing.assert_allclose(shown.radii[1:], plain.radii)
+    # who walks away from such a root is followed
+    way = np.zeros((60, 15, 3))
+    way[:, 1, 2] = np.linspace(0, 6, 60)
+    walks = Motion(carried, 30, np.zeros((60, 3)), np.tile(rotations[:1], (60, 1, 1)), translations=way)
+    assert np.ptp(figure.group([walks]).follow[:, 2]) > 4
 
 
 @given(places, st.floats(0.001, 0.5), st.floats(0.3, 3.0), places)

@@ -39,6 +39,8 @@ class Group(NamedTuple):
     ----------
     points : (T, N, 3)
         Joints and ends, metres.
+    owners : (N,)
+        The number of the figure that each point belongs to.
     bones : (B, 2)
         Indices of the points that each bone joins.
     radii, bone_radii : (N,), (B,)
@@ -54,6 +56,7 @@ class Group(NamedTuple):
     """
 
     points: Floats
+    owners: NDArray[np.int64]
     bones: NDArray[np.int64]
     radii: Floats
     bone_radii: Floats
@@ -86,6 +89,7 @@ def group(motions: Sequence[Motion]) -> Group:
     points, bones, first, edge = [], [], 0, 0.0
     right = look(parts[0].view)[:, 0]
     for part in parts:
+        # several stay in their places, however far they go
         own = _turned(part, parts[0].view) if len(parts) > 1 else part.points
         own = np.concatenate([own, np.repeat(own[-1:], frames - len(own), axis=0)])
         if len(parts) > 1:
@@ -98,6 +102,7 @@ def group(motions: Sequence[Motion]) -> Group:
         first += own.shape[1]
     return Group(
         np.concatenate(points, axis=1),
+        np.repeat(np.arange(len(points)), [p.shape[1] for p in points]),
         np.concatenate(bones),
         np.concatenate([p.radii for p in parts]),
         np.concatenate([p.bone_radii for p in parts]),
@@ -111,12 +116,12 @@ def group(motions: Sequence[Motion]) -> Group:
 
 
 def _turned(part: Group, view: Floats) -> Floats:
-    """Points turned about the vertical, so that a figure that is seen from `part.view` is seen from
-    `view`."""
+    """Points of a figure that stays in its place, turned about the vertical so that it is seen from `view`
+    as it was from `part.view`."""
     angle = np.arctan2(view[0], view[2]) - np.arctan2(part.view[0], part.view[2])
     c, s = np.cos(angle), np.sin(angle)
     turn = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
-    return np.asarray(part.points @ turn.T)
+    return np.asarray((part.points - part.follow[:, None]) @ turn.T)
 
 
 def _one(motion: Motion) -> Group:
@@ -142,6 +147,7 @@ def _one(motion: Motion) -> Group:
     tint = 0.72 * rgba + 0.28 * np.array([1.0, 1.0, 1.0, 1.0])
     return Group(
         points,
+        np.zeros(points.shape[1], dtype=np.int64),
         bones,
         radii,
         bone_radii,
@@ -150,7 +156,7 @@ def _one(motion: Motion) -> Group:
         floor=float(joints[:, 0, 1].min()) if hand else _floor(points, thickness),
         cell=0.02 if hand else 0.5,
         view=np.array(_HAND_VIEW) if hand else _front(motion, joints),
-        follow=np.zeros((len(points), 3)) if hand else _path(joints[:, 0], motion.fps),
+        follow=np.zeros((len(points), 3)) if hand else _path(joints[:, hidden], motion.fps),
     )
 
 
@@ -232,11 +238,11 @@ def _front(motion: Motion, joints: Floats) -> Floats:
     return np.array([np.sin(angle), np.tan(np.radians(14.0)), np.cos(angle)])
 
 
-def _path(root: Floats, fps: float) -> Floats:
-    """The root's smoothed way over the ground, from its first frame; zeros if it stays in one place."""
-    way = root * (1.0, 0.0, 1.0)
+def _path(waist: Floats, fps: float) -> Floats:
+    """The waist's smoothed way over the ground, from its first frame; zeros if it stays in one place."""
+    way = waist * (1.0, 0.0, 1.0)
     if np.linalg.norm(np.ptp(way, axis=0)) <= _STANDS_STILL:
-        return np.zeros_like(root)
+        return np.zeros_like(way)
     smooth = gaussian_filter1d(way, 0.6 * fps, axis=0, mode="nearest")
     return np.asarray(smooth - smooth[0])
 
@@ -279,6 +285,16 @@ def camera(figures: Group, aspect: float) -> Camera:
     points = (figures.points - figures.follow[:, None]).reshape(-1, 3)
     radii = np.tile(figures.radii, len(figures.points))
     return Camera(rotation, framed(points, radii, rotation, aspect) + figures.follow)
+
+
+def across(figures: Group, seen_by: Camera, aspect: float) -> list[float]:
+    """Where each figure's middle is in the first picture, from 0 at its left edge to 1 at its right."""
+    seen = (figures.points - seen_by.places[:1, None]) @ seen_by.rotation
+    middles = [
+        0.5 * (seen[:, figures.owners == k].min(axis=(0, 1)) + seen[:, figures.owners == k].max(axis=(0, 1)))
+        for k in range(int(figures.owners.max()) + 1)
+    ]
+    return [float(0.5 - 0.5 * x / (z * aspect * np.tan(FIELD / 2))) for x, _, z in middles]
 
 
 def grid(figures: Group) -> Floats:

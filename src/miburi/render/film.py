@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import tempfile
 from collections.abc import Iterator, Sequence
 
 import imageio_ffmpeg
@@ -12,7 +14,7 @@ from miburi import store
 from miburi.errors import InputError
 from miburi.kinematics import resample
 from miburi.motion import Motion
-from miburi.render import scene, text
+from miburi.render import figure, scene, text
 from miburi.render.scene import Picture
 
 # One thread and no stamps: x264's bytes depend on the number of threads.
@@ -30,9 +32,13 @@ def film(
     fps: float | None = None,
     width: int = 640,
     height: int = 480,
+    title: str = "",
+    names: Sequence[str] = (),
     captions: Sequence[Caption] = (),
 ) -> int:
     """Make a film of one motion, or of several side by side.
+
+    Words stand above and below the figures, never over them.
 
     Parameters
     ----------
@@ -42,6 +48,10 @@ def film(
         Pictures per second; absent: the first motion's rate. Motions of another rate are resampled.
     width, height
         Even numbers of pixels.
+    title
+        Stands above throughout: what is shown, and whether it is simulated.
+    names
+        Of the figures that are shown side by side, written under each.
     captions
         (start_s, end_s, text): what is written below from when to when, seconds; the end is exclusive.
 
@@ -53,7 +63,7 @@ def film(
     Raises
     ------
     InputError
-        Nothing to show, or a size or rate that a film cannot have.
+        Nothing to show, a size or rate that a film cannot have, or the film cannot be written.
     """
     shown = [motions] if isinstance(motions, Motion) else list(motions)
     if not shown:
@@ -63,34 +73,65 @@ def film(
         raise InputError(f"{path}: {rate:g} pictures per second, expected more than 0 and at most 1000")
     if width % 2 or height % 2:
         raise InputError(f"{path}: pictures of {width} × {height} pixels, a film needs even numbers")
-    pictures = scene.frames([resample(m, rate) for m in shown], width=width, height=height)
+    if names and len(names) != len(shown):
+        raise InputError(f"{path}: {len(names)} names for {len(shown)} figures")
+    line = text.size(height)
+    top = int(1.7 * line) if title else 0
+    below = int(1.5 * line) * (bool(names) + bool(captions))
+    inner = height - top - below
+    motions_at_rate = [resample(m, rate) for m in shown]
+    page = np.full((height, width, 3), 255, np.uint8)
+    if title:
+        page = text.write(page, title, (line, 0.5 * line), "lt", line)
+    if names:
+        figures = figure.group(motions_at_rate)
+        places = figure.across(figures, figure.camera(figures, width / inner), width / inner)
+        for name, x in zip(names, places, strict=True):
+            page = text.write(page, name, (x * width, top + inner + 0.2 * line), "mt", line)
+    pictures = scene.frames(motions_at_rate, width=width, height=inner)
     with store.replaced(path) as temporary:
-        return encode(temporary, _captioned(pictures, rate, captions), rate, width, height)
+        try:
+            return encode(temporary, _pages(pictures, page, top, rate, captions), rate, width, height)
+        except _FfmpegFailed as error:
+            raise InputError(f"{path}: the film cannot be written (ffmpeg: {error})") from error
+        finally:
+            pictures.close()
+
+
+class _FfmpegFailed(Exception):
+    """What ffmpeg said last."""
 
 
 def encode(
     path: str | os.PathLike[str], pictures: Iterator[Picture], fps: float, width: int, height: int
 ) -> int:
     """Write pictures (height, width, 3) as an MP4; their number."""
-    writer = imageio_ffmpeg.write_frames(
-        str(path),
-        (width, height),
-        fps=fps,
-        codec="libx264",
-        pix_fmt_in="rgb24",
-        pix_fmt_out="yuv420p",
-        quality=None,
-        macro_block_size=2,
-        output_params=list(_BIT_EXACT),
-    )
-    writer.send(None)
+    command = [
+        *(imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-v", "error"),
+        *("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", f"{fps:.10g}", "-i", "-"),
+        *("-an", "-c:v", "libx264", "-pix_fmt", "yuv420p", *_BIT_EXACT, "-f", "mp4", os.fspath(path)),
+    ]
     count = 0
-    try:
-        for picture in pictures:
-            writer.send(picture)
-            count += 1
-    finally:
-        writer.close()
+    # what it says goes to a file: a pipe that nobody reads would block it
+    with tempfile.TemporaryFile() as said:
+        ffmpeg = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said)
+        assert ffmpeg.stdin is not None
+        try:
+            for picture in pictures:
+                ffmpeg.stdin.write(np.ascontiguousarray(picture).data)
+                count += 1
+            ffmpeg.stdin.close()
+        except BrokenPipeError:
+            pass  # it has ended, and says why
+        except BaseException:
+            ffmpeg.kill()
+            raise
+        finally:
+            status = ffmpeg.wait()
+        if status:
+            said.seek(0)
+            words = said.read().decode(errors="replace").strip().splitlines()
+            raise _FfmpegFailed(words[0] if words else f"it ended with status {status}")
     return count
 
 
@@ -103,7 +144,12 @@ def decode(path: str | os.PathLike[str]) -> tuple[float, Picture]:
     return float(about["fps"]), np.stack(pictures)
 
 
-def _captioned(pictures: Iterator[Picture], fps: float, captions: Sequence[Caption]) -> Iterator[Picture]:
+def _pages(
+    pictures: Iterator[Picture], page: Picture, top: int, fps: float, captions: Sequence[Caption]
+) -> Iterator[Picture]:
+    """Pictures on a page of words, with the caption of their time."""
     for k, picture in enumerate(pictures):
         words = [w for start, end, w in captions if start <= (k + 1e-6) / fps < end]
-        yield text.below(picture, words[0]) if words else picture
+        whole = text.below(page, words[0]).copy() if words else page.copy()
+        whole[top : top + len(picture)] = picture
+        yield whole

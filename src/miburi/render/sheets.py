@@ -78,6 +78,7 @@ def sheet(
     motion: Motion,
     strips: Sequence[Strip],
     *,
+    title: str = "",
     captions: Sequence[str] | None = None,
     width: int = 240,
     height: int = 240,
@@ -90,6 +91,8 @@ def sheet(
         Of the PNG.
     strips
         Its rows; all frames are seen by the same camera.
+    title
+        Stands above: what is shown, and whether it is simulated.
     captions
         A word for each frame of the motion (its label); under each picture stands the time and this word.
     width, height
@@ -107,10 +110,10 @@ def sheet(
         raise InputError(f"{path}: frames {min(shown)} to {max(shown)}, the motion has {len(motion)}")
     if captions is not None and len(captions) != len(motion):
         raise InputError(f"{path}: {len(captions)} captions for {len(motion)} frames")
-    cell, title = max(14, height // 12), max(16, height // 10)
+    cell, large = max(14, height // 12), max(16, height // 10)
     pictures = scene.frames(motion, width=width, height=height, at=shown)
     across = max(len(s.frames) for s in strips)
-    page = []
+    page = [_heading(title, across * width, large)] if title else []
     for strip in strips:
         row = np.full((height + int(1.7 * cell), across * width, 3), 255, np.uint8)
         for c, k in enumerate(strip.frames):
@@ -118,9 +121,14 @@ def sheet(
             words = f"{k / motion.fps:.2f} s" + (f"  {captions[k]}" if captions is not None else "")
             row = text.write(row, words, ((c + 0.5) * width, height + 0.2 * cell), "mt", cell).copy()
         if strip.title:
-            head = np.full((int(1.6 * title), row.shape[1], 3), 255, np.uint8)
-            page.append(text.write(head, strip.title, (0.5 * title, 0.35 * title), "lt", title))
+            page.append(_heading(strip.title, across * width, large))
         page.append(row)
     pictures.close()
     with store.replaced(path) as temporary:
         Image.fromarray(np.concatenate(page)).save(temporary, format="PNG", compress_level=6)
+
+
+def _heading(words: str, width: int, letters: int) -> NDArray[np.uint8]:
+    """A line of words."""
+    line = np.full((int(1.6 * letters), width, 3), 255, np.uint8)
+    return text.write(line, words, (0.5 * letters, 0.35 * letters), "lt", letters)

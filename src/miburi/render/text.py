@@ -21,16 +21,27 @@ def _font(size: int) -> FreeTypeFont:
     return font
 
 
-def write(picture: Picture, words: str, at: tuple[float, float], anchor: str, size: int) -> Picture:
-    """The picture with words at (x, y) pixels; `anchor` as in Pillow, "lt" is the words' upper left
-    corner."""
+def write(picture: Picture, words: str, at: tuple[float, float], anchor: str, letters: int) -> Picture:
+    """The picture with words at (x, y) pixels, in letters of so many.
+
+    `anchor` is Pillow's: "lt" means that the words' upper left corner is there. Words that would reach beyond
+    the right edge are set smaller.
+    """
+    room = picture.shape[1] - at[0] if anchor[0] == "l" else 2 * min(at[0], picture.shape[1] - at[0])
+    while letters > 6 and _font(letters).getlength(words) > room:
+        letters -= 1
     image = Image.fromarray(picture)
-    ImageDraw.Draw(image).text(at, words, fill=_INK, font=_font(size), anchor=anchor)
+    ImageDraw.Draw(image).text(at, words, fill=_INK, font=_font(letters), anchor=anchor)
     return np.asarray(image)
+
+
+def size(height: int) -> int:
+    """Pixels of the letters of words about pictures of this height."""
+    return max(10, height // 20)
 
 
 def below(picture: Picture, words: str) -> Picture:
     """The picture with words in its lower left corner."""
     height = len(picture)
-    size = max(10, height // 18)
-    return write(picture, words, (size, height - 0.6 * size), "ls", size)
+    letters = size(height)
+    return write(picture, words, (letters, height - 0.5 * letters), "ls", letters)
