@@ -35,7 +35,7 @@ def squats(b: Score, times: int) -> Span:
     """Knee bends with the arms ahead, at the hips or behind the head."""
     who, k = b.who, b.who.height / 1.75
     steps.stand(b, b.stance("l", 1.5), b.stance("r", 1.5), yaws=(8.0, -8.0))
-    arms = b.rng.choice(["ahead", "ahead", "swing", "hips", "head"])
+    arms = b.way("squats", "ahead", "ahead", "swing", "hips", "head")
     depth = min(max(b.vary(1.1, 0.15) * who.size, 0.7), 1.4) * who.thigh
     t = b.now
     if arms in ("hips", "head"):
@@ -83,7 +83,7 @@ def squats(b: Score, times: int) -> Span:
 def twists(b: Score, times: int) -> Span:
     """The trunk twists from side to side over feet that stand; arms out, bent, or hands at the hips."""
     steps.stand(b, b.stance("l", 1.6), b.stance("r", 1.6), yaws=(4.0, -4.0))
-    arms = b.rng.choice(["out", "out", "bent", "hips"])
+    arms = b.way("twists", "out", "out", "bent", "hips")
     t = b.now
     ready = b.beat(0.6)
     for side in SIDES:
@@ -101,7 +101,7 @@ def twists(b: Score, times: int) -> Span:
     size = b.who.size
     lean, stoop = float(b.rng.uniform(-2.0, 13.0)), float(b.rng.uniform(0.0, 12.0))
     for number in range(2 * times):
-        span = b.beat(0.72) * (0.7 if number == 0 else 1.0)
+        span = b.beat(0.85) * (0.7 if number == 0 else 1.0)
         b.turn(t, t + span, 24.0 * way * size, 0.0, 0.0)
         b.trunk(t + 0.03, t + span + 0.04, stoop, lean * way, b.vary(40.0, 3.0) * way * size)
         b.look(t + 0.02, t + span + 0.06, 0.0, b.vary(15.0, 4.0) * way)
@@ -282,7 +282,10 @@ def stool(b: Score) -> Span:
     keep_feet(b)
     seat = b.vary(0.405, 0.015)
     start, _ = sit(
-        b, seat, rung=0.2 if b.rng.random() < 0.6 else 0.0, hands="knee" if b.rng.random() < 0.7 else "edge"
+        b,
+        seat,
+        rung=0.2 if b.way("rung", "yes", "yes", "no") == "yes" else 0.0,
+        hands=b.way("stool", "knee", "knee", "edge"),
     )
     idle(b, b.beat(1.8, 0.5))
     _, end = stand_up(b)
@@ -320,7 +323,7 @@ def swing_legs(b: Score, times: int) -> Span:
     b.trunk(t, t + ready, b.vary(6.0, 5.0))
     t += ready
     start = t
-    together = b.rng.random() < 0.3
+    together = b.way("legs", "in turn", "in turn", "together") == "together"
     ahead, back = b.vary(34.0, 7.0) * who.size, b.vary(-18.0, 4.0) * who.size
     for number in range(times):
         span = b.beat(0.52)
@@ -364,7 +367,7 @@ def chin_seated(b: Score) -> Span:
     b.trunk(t, t + lean, b.vary(30.0, 4.0), 0.0, -b.out(side) * 8.0)
     b.turn(t, t + lean, 0.0, 4.0, 0.0)
     b.reach(side, t, t + lean, (0.03, b.vary(-0.10, 0.01), 0.12), "head", arc=0.08)
-    b.move(f"{side}_swivel", t, t + lean, (-12.0,))
+    b.move(f"{side}_swivel", t, t + lean, (b.vary(14.0, 4.0),))
     b.move(f"{side}_wrist", t, t + lean, (-30.0, 0.0, 0.0))
     b.look(t, t + lean, 2.0, b.vary(0.0, 6.0))
     t += lean

@@ -228,6 +228,17 @@ def _clear(who: Person, chest: tuple[Floats, Floats], hand: Floats) -> Floats:
     return hand + _apply(axes, np.stack([np.zeros_like(deep), np.zeros_like(deep), before * pushed], axis=-1))
 
 
+def _inside(who: Person, chest: tuple[Floats, Floats], place: Floats) -> Floats:
+    """How deep a place is in the trunk: 0 outside, 1 at its axis (T,), smooth."""
+    origin, axes = chest
+    seen = np.einsum("tji,tj->ti", axes, place - origin)
+    h = who.height
+    r = np.hypot(seen[:, 0] / (0.11 * h), seen[:, 2] / (0.08 * h))
+    level = np.abs(seen[:, 1] + 0.08 * h) - 0.17 * h
+    depth: Floats = 0.08 * np.logaddexp(0.0, (1.0 - r) / 0.08) * expit(-level / (0.015 * h))
+    return depth
+
+
 def embody(b: Score, rng: np.random.Generator, name: str = "") -> Motion:
     """The motion of a score.
 
@@ -353,6 +364,9 @@ def _upper(
     collar = chest @ _turn("YZ", -sign * ahead, sign * raised)
     shoulder = girdle + _apply(collar, offsets[_J[f"{long}Arm"]])
     swivel = curve(b.tracks[f"{s}_swivel"], t)[:, 0] + 4.0 * who.sway * _unrest(rng, n, 1, 0.4)[:, 0]
+    upper, fore = _arm(who, s, shoulder, hand, chest, swivel)
+    elbow = shoulder + sign * who.upper_arm * upper[:, :, 0]
+    swivel = swivel + 55.0 * _inside(who, (middle, chest), elbow)  # elbows go round the trunk
     upper, fore = _arm(who, s, shoulder, hand, chest, swivel)
     wrist = curve(b.tracks[f"{s}_wrist"], t) + 2.0 * _unrest(rng, n, 3, 0.8)
     world[f"{long}Shoulder"], world[f"{long}Arm"], world[f"{long}ForeArm"] = collar, upper, fore

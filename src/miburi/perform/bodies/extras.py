@@ -42,7 +42,7 @@ def scratch(b: Score, times: int) -> Span:
     up = b.beat(0.9)
     at = (b.vary(0.07, 0.015), b.vary(0.15, 0.02), b.vary(0.03, 0.03))
     b.reach(side, t, t + up, at, "head", arc=0.14)
-    b.move(f"{side}_swivel", t, t + up, (b.vary(22.0, 8.0),))
+    b.move(f"{side}_swivel", t, t + up, (b.vary(2.0, 8.0),))
     b.look(t, t + up, 8.0, b.vary(0.0, 6.0), b.out(side) * -7.0)
     t += up
     for _ in range(times):
@@ -66,7 +66,7 @@ def mop(b: Score, times: int) -> Span:
     t = b.now
     start = t
     ready = b.beat(0.7)
-    aside = b.rng.random() < 0.5  # strokes from side to side, else to and fro
+    aside = b.way("mop", "aside", "to and fro") == "aside"
     far = b.vary(0.17, 0.03) * k * b.who.size
 
     def hold(s: float, e: float, share: float, exact: bool) -> None:
@@ -134,7 +134,7 @@ def stretch(b: Score, times: int) -> Span:
     t = b.now
     start = t
     up = b.beat(1.0)
-    one = b.rng.random() < 0.4  # one hand stays at the hip
+    one = b.way("stretch", "both", "one") == "one"  # one hand stays at the hip
     way = 1.0 if b.rng.random() < 0.5 else -1.0
     for side in SIDES:
         if one and b.out(side) == way:
@@ -167,3 +167,52 @@ def stretch(b: Score, times: int) -> Span:
     b.now = t + 0.9 * down
     steps.home(b)
     return start, t + 0.9 * down
+
+
+def bow(b: Score) -> Span:
+    """A bow with the hands at the thighs or folded."""
+    t = b.now
+    start = t
+    deep = b.vary(38.0, 10.0) * b.who.size
+    go, hold, back = b.beat(0.85), b.beat(0.4, 0.3), b.beat(0.95)
+    ahead = b.way("bow", "ahead", "at the thighs") == "ahead"
+    b.pelvis(t, t + go, 0.0, -0.008, -0.0022 * deep)
+    b.turn(t, t + go, 0.0, 0.55 * deep, 0.0)
+    b.trunk(t, t + go, 0.5 * deep)
+    b.look(t + 0.05, t + go, 0.15 * deep)
+    for side in "lr":
+        value = (-0.2, -0.82, 0.35) if ahead else (0.06, -0.86, 0.38)
+        b.reach(side, t, t + go, value)
+    t += go + hold
+    b.rise(t, t + back)
+    b.relax(t, t + back)
+    b.now = t + 0.95 * back
+    return start, b.now
+
+
+def reach_up(b: Score, times: int) -> Span:
+    """One or both hands reach for something high; heels leave the floor."""
+    t = b.now
+    start = t
+    both = b.way("reach", "one", "one", "both") == "both"
+    side = b.hand
+    for _ in range(times):
+        go, hold, back = b.beat(1.0), b.beat(0.45, 0.3), b.beat(0.95)
+        tip = b.rng.random() < 0.6
+        lean = 0.0 if both else b.out(side)
+        for s in "lr":
+            if both or s == side:
+                b.reach(s, t, t + go, (-0.05, 0.93, 0.3), arc=0.16)
+            if tip:
+                yaw = b.last(f"{s}_sole").value[0]
+                b.move(f"{s}_sole", t + 0.3 * go, t + go, (yaw, 24.0))
+                b.move(f"{s}_sole", t + go + hold, t + go + hold + 0.7 * back, (yaw, 0.0))
+        b.pelvis(t + 0.2 * go, t + go, 0.03 * lean, 0.045 if tip else 0.0, 0.035 if tip else 0.01)
+        b.trunk(t, t + go, -7.0, -6.0 * lean)
+        b.look(t - 0.05, t + 0.8 * go, -28.0)
+        t += go + hold
+        b.relax(t, t + back, "lr" if both else side)
+        b.rise(t, t + 0.9 * back)
+        t += back + abs(b.vary(0.05, 0.1))
+    b.now = t
+    return start, t

@@ -37,7 +37,7 @@ def punch(b: Score, times: int, side: str = "r") -> Span:
     guard(t - 0.15, t + ready)
     start = t
     t += ready + 0.1
-    kind = b.rng.choice(["straight", "straight", "hook", "upper"])
+    kind = b.way("punch", "straight", "straight", "hook", "upper")
     for _ in range(times):
         back, out, again = b.beat(0.16), b.beat(0.23), b.beat(0.34)
         if bounce:
@@ -81,10 +81,10 @@ def wash(b: Score, times: int, up_and_down: bool) -> Span:
         wide, apart = b.rng.uniform(1.2, 2.0), b.rng.normal(0.0, 0.06) * k
         stand(b, b.stance("l", wide, apart), b.stance("r", wide, -apart))
     t = b.now
-    ready = b.beat(0.65)
-    circles = up_and_down and b.rng.random() < 0.4
+    ready = b.beat(0.85)
+    circles = up_and_down and b.way("wash 2", "strokes", "strokes", "circles") == "circles"
     # the other hand hangs, leans on the pane or holds on to the hip
-    other = b.rng.choice(["hang", "hang", "pane", "hip"])
+    other = b.way("wash", "hang", "hang", "pane", "hip")
     x = left_edge if not up_and_down else right_edge * 0.8
     y = top
     b.reach("r", t, t + ready, (x, y, pane), "stage", arc=0.15)
@@ -189,14 +189,14 @@ def chin(b: Score) -> Span:
     start = t
     side = b.hand
     rise = b.beat(0.8)
-    held = b.rng.random() < 0.7
+    held = b.way("chin", "held", "held", "hangs") == "held"
     b.reach(side, t, t + rise, _chin(b), "head", arc=0.12)
     b.move(f"{side}_wrist", t, t + rise, (30.0, 0.0, 0.0))
     if held:
-        b.reach(b.other(side), t + 0.1, t + rise, (-0.42, -0.58, 0.42), arc=0.05)
-        b.move(f"{side}_swivel", t, t + rise, (-16.0,))
+        b.reach(b.other(side), t + 0.1, t + rise, (b.vary(-0.5, 0.04), b.vary(-0.55, 0.04), 0.31), arc=0.05)
+        b.move(f"{side}_swivel", t, t + rise, (b.vary(14.0, 4.0),))
     else:
-        b.move(f"{side}_swivel", t, t + rise, (-8.0,))
+        b.move(f"{side}_swivel", t, t + rise, (b.vary(20.0, 6.0),))
     b.trunk(t, t + rise, 3.0, b.vary(0.0, 2.0), b.vary(0.0, 3.0))
     b.look(t, t + rise, 11.0, b.vary(0.0, 9.0), b.out(side) * -4.0)
     b.pelvis(t, t + rise, b.vary(0.0, 0.025), -0.004, 0.0)
@@ -224,7 +224,7 @@ def drink(b: Score, times: int) -> Span:
     t = b.now
     start = t
     sign = b.out(side)
-    if b.rng.random() < 0.5:
+    if b.way("drink", "fetch", "held") == "fetch":
         fetch = b.beat(0.75)
         b.reach(side, t, t + fetch, (sign * 0.2 * k, 0.6 * b.who.height, 0.42 * k), "stage")
         b.trunk(t, t + fetch, 8.0, 0.0, -sign * 6.0)
@@ -246,7 +246,7 @@ def drink(b: Score, times: int) -> Span:
             "head",
             arc=0.05,
         )
-        b.move(f"{side}_swivel", t, t + up, (b.vary(30.0, 8.0),))
+        b.move(f"{side}_swivel", t, t + up, (b.vary(4.0, 8.0),))
         b.move(f"{side}_wrist", t, t + up, (10.0, -12.0, -15.0))
         b.look(t + 0.4 * up, t + up + 0.15, -14.0)
         b.trunk(t + 0.3 * up, t + up + 0.1, -4.0)
@@ -256,7 +256,7 @@ def drink(b: Score, times: int) -> Span:
         t += sip
         b.look(t, t + 0.7 * down, 3.0)
         b.trunk(t, t + down, 0.0)
-        b.move(f"{side}_swivel", t, t + down, (4.0,))
+        b.move(f"{side}_swivel", t, t + down, (0.0,))
         if number + 1 < times:
             b.reach(side, t, t + down, waist, arc=0.03)
         else:
@@ -361,52 +361,3 @@ def throw(b: Score) -> Span:
     b.now = t + 0.2
     home(b)
     return start, b.now
-
-
-def bow(b: Score) -> Span:
-    """A bow with the hands at the thighs or folded."""
-    t = b.now
-    start = t
-    deep = b.vary(38.0, 10.0) * b.who.size
-    go, hold, back = b.beat(0.85), b.beat(0.4, 0.3), b.beat(0.95)
-    ahead = b.rng.random() < 0.5
-    b.pelvis(t, t + go, 0.0, -0.008, -0.0022 * deep)
-    b.turn(t, t + go, 0.0, 0.55 * deep, 0.0)
-    b.trunk(t, t + go, 0.5 * deep)
-    b.look(t + 0.05, t + go, 0.15 * deep)
-    for side in "lr":
-        value = (-0.2, -0.82, 0.35) if ahead else (0.02, -0.86, 0.38)
-        b.reach(side, t, t + go, value)
-    t += go + hold
-    b.rise(t, t + back)
-    b.relax(t, t + back)
-    b.now = t + 0.95 * back
-    return start, b.now
-
-
-def reach_up(b: Score, times: int) -> Span:
-    """One or both hands reach for something high; heels leave the floor."""
-    t = b.now
-    start = t
-    both = b.rng.random() < 0.4
-    side = b.hand
-    for _ in range(times):
-        go, hold, back = b.beat(1.0), b.beat(0.45, 0.3), b.beat(0.95)
-        tip = b.rng.random() < 0.6
-        lean = 0.0 if both else b.out(side)
-        for s in "lr":
-            if both or s == side:
-                b.reach(s, t, t + go, (-0.05, 0.93, 0.3), arc=0.16)
-            if tip:
-                yaw = b.last(f"{s}_sole").value[0]
-                b.move(f"{s}_sole", t + 0.3 * go, t + go, (yaw, 24.0))
-                b.move(f"{s}_sole", t + go + hold, t + go + hold + 0.7 * back, (yaw, 0.0))
-        b.pelvis(t + 0.2 * go, t + go, 0.03 * lean, 0.045 if tip else 0.0, 0.035 if tip else 0.01)
-        b.trunk(t, t + go, -7.0, -6.0 * lean)
-        b.look(t - 0.05, t + 0.8 * go, -28.0)
-        t += go + hold
-        b.relax(t, t + back, "lr" if both else side)
-        b.rise(t, t + 0.9 * back)
-        t += back + abs(b.vary(0.05, 0.1))
-    b.now = t
-    return start, t

@@ -8,6 +8,7 @@ both, so that a hand finds the mouth of a head that nods.
 
 from __future__ import annotations
 
+import hashlib
 import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -18,6 +19,7 @@ from miburi.perform.bodies.people import Person
 
 SIDES = ("l", "r")
 Vector = tuple[float, ...]
+_OWN_WAY = 0.6  # of the times that there are several ways
 
 
 class Key(NamedTuple):
@@ -145,6 +147,12 @@ class Score:
     def vary(self, value: float, spread: float) -> float:
         """A figure, never twice the same."""
         return value + float(self.rng.normal(0.0, spread))
+
+    def way(self, what: str, *ways: str) -> str:
+        """One of several ways of doing something: mostly the performer's own, which depends on their name."""
+        own = int.from_bytes(hashlib.sha256(f"{self.who.name}/{what}".encode()).digest()[:4], "big")
+        pick = own if self.rng.random() < _OWN_WAY else int(self.rng.integers(2**31))
+        return ways[pick % len(ways)]
 
     def last(self, track: str) -> Key:
         """A track's last key."""

@@ -48,7 +48,7 @@ def _swing(b: Score, times: int) -> Done:
 
 def _chin(b: Score, times: int) -> Done:
     keyword = "hand on chin"
-    if b.rng.random() < 0.6:
+    if b.way("thinks", "standing", "standing", "seated") == "standing":
         return [(keyword, *gestures.chin(b))]
     return _seated(b, keyword, lambda: actions.chin_seated(b), b.vary(0.27, 0.01), "knee")
 
@@ -69,10 +69,10 @@ MOTIONS: Mapping[str, Callable[[Score, int], Done]] = {
     "wave": _single("wave", gestures.wave),
     "throw": _single("throw", lambda b, n: gestures.throw(b)),
     "kick": _single("kick", actions.kick),
-    "bow": _single("bow", lambda b, n: gestures.bow(b)),
+    "bow": _single("bow", lambda b, n: extras.bow(b)),
     "pick up": _single("pick up", lambda b, n: actions.pick_up(b)),
     "clap": _single("clap", gestures.clap),
-    "reach up": _single("reach up", gestures.reach_up),
+    "reach up": _single("reach up", extras.reach_up),
     "left punch": _single("left punch", lambda b, n: gestures.punch(b, n, "l")),
     "phone call": _single("phone call", lambda b, n: extras.phone(b)),
     "scratch head": _single("scratch head", extras.scratch),
