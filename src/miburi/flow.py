@@ -298,8 +298,8 @@ def one_of(names: Iterable[str]) -> str:
 
 
 def none_of(names: Iterable[str]) -> str:
-    """A wildcard's pattern: a name, but none of these."""
-    return f"(?!({one_of(names)})$)[^/]+"
+    """A pattern of a film's name: any but these."""
+    return rf"(?!({one_of(names)})(\.mp4|_sheet\.png)$)[^/]+"
 
 
 def plan(config: Mapping[str, Any]) -> Flow:
