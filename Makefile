@@ -60,11 +60,13 @@ lint: setup
 	$(BIN)/python tools/lint_snakemake.py
 	$(BIN)/python tools/config_docs.py --check
 
+# nothing in the lock may need a compiler; one package has no wheel, but is Python alone
 lock: | system
 	$(PYTHON) -m venv build/lock
 	build/lock/bin/python -m pip install --quiet --disable-pip-version-check uv
 	build/lock/bin/uv pip compile requirements.in --override overrides.txt --upgrade \
 		--python-version 3.11 --python-platform linux --generate-hashes \
+		--only-binary :all: --no-binary connection-pool \
 		--no-emit-index-url --no-header --no-annotate --quiet -o requirements.lock
 
 clean:
