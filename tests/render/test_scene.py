@@ -108,6 +108,10 @@ def test_figures_stand_side_by_side():
     raised = Motion(PERSON, 30, high.root + np.array([0, 1.0, 0]), high.rotations)
     level = figure.group([high, raised]).points[..., 1]
     np.testing.assert_allclose(level[:, 15:], level[:, :15], atol=1e-9)
+    # and in one row, wherever they were recorded
+    far = Motion(PERSON, 30, high.root + np.array([3.0, 0, -7.0]), high.rotations)
+    depths = figure.group([high, far]).points @ figure.look(shown.view)[:, 2]
+    np.testing.assert_allclose(depths[:, 15:].mean(), depths[:, :15].mean(), atol=1e-9)
     # the second one is turned to the camera as the first one is
     first, second = (shown.points[0, k : k + 15] - shown.points[0, k] for k in (0, 15))
     np.testing.assert_allclose(second, first, atol=1e-9)
@@ -131,7 +135,7 @@ def test_a_root_on_the_floor_is_not_drawn():
     way = np.zeros((60, 15, 3))
     way[:, 1, 2] = np.linspace(0, 6, 60)
     walks = Motion(carried, 30, np.zeros((60, 3)), np.tile(rotations[:1], (60, 1, 1)), translations=way)
-    assert np.ptp(figure.group([walks]).follow[:, 2]) > 4
+    assert np.ptp(figure.group([walks]).follow[:, 2]) > 5.8
 
 
 @given(places, st.floats(0.001, 0.5), st.floats(0.3, 3.0), places)

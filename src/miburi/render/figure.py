@@ -88,13 +88,14 @@ def group(motions: Sequence[Motion]) -> Group:
     frames = max(len(p.points) for p in parts)
     points, bones, first, edge = [], [], 0, 0.0
     right = look(parts[0].view)[:, 0]
+    away = np.cross(right, (0.0, 1.0, 0.0))
     for part in parts:
         # several stay in their places, however far they go
         own = _turned(part, parts[0].view) if len(parts) > 1 else part.points
         own = np.concatenate([own, np.repeat(own[-1:], frames - len(own), axis=0)])
         if len(parts) > 1:
             across = own @ right
-            own = own + (edge - across.min()) * right
+            own = own + (edge - across.min()) * right - np.mean(own @ away) * away  # in one row
             own[:, :, 1] += parts[0].floor - part.floor  # on one ground
             edge += float(np.ptp(across)) + 2.0 * part.cell
         points.append(own)
@@ -243,7 +244,10 @@ def _path(waist: Floats, fps: float) -> Floats:
     way = waist * (1.0, 0.0, 1.0)
     if np.linalg.norm(np.ptp(way, axis=0)) <= _STANDS_STILL:
         return np.zeros_like(way)
-    smooth = gaussian_filter1d(way, 0.6 * fps, axis=0, mode="nearest")
+    # turned about both ends, so that who runs through them is followed at the same pace
+    beyond = min(int(2.4 * fps), len(way) - 1)
+    longer = np.pad(way, ((beyond, beyond), (0, 0)), mode="reflect", reflect_type="odd")
+    smooth = gaussian_filter1d(longer, 0.6 * fps, axis=0, mode="nearest")[beyond : beyond + len(way)]
     return np.asarray(smooth - smooth[0])
 
 
