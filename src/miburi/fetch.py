@@ -21,15 +21,20 @@ from miburi.formats import asf_amc
 log = logging.getLogger(__name__)
 
 _TRIES = 4
+RETRIES = 5
+BACKOFF_S = 1.0
 _TIMEOUT_S = 30.0
-_CHUNK = 1 << 16
+_CHUNK = 1 << 13
 _KEPT = "arriving"  # folder of files that have arrived, until all of a subject have
 
 
 def session() -> requests.Session:
     """A session that tries again, with growing pauses, when a server is busy or a connection breaks."""
     retries = Retry(
-        total=5, backoff_factor=1.0, status_forcelist=(429, 500, 502, 503, 504), allowed_methods=("GET",)
+        total=RETRIES,
+        backoff_factor=BACKOFF_S,
+        status_forcelist=(429, 500, 502, 503, 504),
+        allowed_methods=("GET",),
     )
     web = requests.Session()
     for scheme in ("http://", "https://"):
@@ -79,24 +84,24 @@ def _checked(
     skeleton: asf_amc.Acclaim | None,
     advance: Callable[[int, int | None], None],
 ) -> asf_amc.Acclaim | None:
-    """Fetch a file until it can be parsed; what an earlier run left is kept or continued."""
+    """Fetch a file until it can be parsed; what an earlier run left is kept, or continued where it broke off."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    reason = ""
-    for attempt in range(_TRIES + 1):
-        if attempt:
-            try:
-                _fetch(web, url, path, advance)
-            except requests.RequestException as error:
-                log.info("%s: try %d: %s", url, attempt, error)
-                reason = f"{url}: cannot be fetched ({type(error).__name__})"
-                continue
+    if path.exists():
+        return _parse(path, skeleton)
+    part = path.with_name(f"{path.name}.part")
+    for attempt in range(1, _TRIES + 1):
         try:
-            if path.exists():
-                return _parse(path, skeleton)
+            _fetch(web, url, part, advance)
+        except requests.RequestException as error:
+            log.info("%s: try %d: %s", url, attempt, error)
+            reason = f"{url}: cannot be fetched ({type(error).__name__})"
+            continue
+        part.rename(path)
+        try:
+            return _parse(path, skeleton)
         except InputError as error:
-            if attempt:  # not only cut short: begin anew
-                path.unlink()
-                reason = f"{url}: what was sent is damaged: {error}"
+            path.unlink()
+            reason = f"{url}: what was sent is damaged: {error}"
     raise InputError(f"{reason}; what has arrived is kept, run snakemake again to go on")
 
 
@@ -108,7 +113,7 @@ def _parse(path: Path, skeleton: asf_amc.Acclaim | None) -> asf_amc.Acclaim | No
 
 
 def _fetch(web: requests.Session, url: str, part: Path, advance: Callable[[int, int | None], None]) -> None:
-    """Fetch to `part`, from where it ends."""
+    """Fetch to `part`, from where it ends, until it is complete."""
     have = part.stat().st_size if part.exists() else 0
     headers = (
         {"Range": f"bytes={have}-", "Accept-Encoding": "identity"}

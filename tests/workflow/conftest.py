@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import re
@@ -58,9 +59,11 @@ class Project:
     def snakemake(self, *arguments: str, timeout: float = 400) -> Run:
         """Run snakemake on the small config, with more arguments."""
         if not any(a.startswith("--configfile") for a in arguments):
-            arguments = ("--configfile", "config/test.yaml", "--", *arguments) if arguments and not arguments[
-                0
-            ].startswith("-") else ("--configfile=config/test.yaml", *arguments)
+            arguments = (
+                ("--configfile", "config/test.yaml", "--", *arguments)
+                if arguments and not arguments[0].startswith("-")
+                else ("--configfile=config/test.yaml", *arguments)
+            )
         done = subprocess.run(
             self.command(*arguments),
             cwd=self.path,
@@ -112,10 +115,8 @@ def fresh(to: Path) -> Project:
 
 def kill(process: subprocess.Popen[str]) -> None:
     """Kill a process and all its children at once."""
-    try:
+    with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
     process.wait()
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-
 from tests.workflow.conftest import Project, Run
 
 
@@ -31,7 +30,9 @@ def test_a_wrong_path(copy: Project) -> None:
     (copy.path / "config" / "mine.yaml").write_text(
         "corpora:\n  mine:\n    kind: body\n    groups:\n      - {folder: data/nowhere, files: ['*.bvh']}\n"
     )
-    said(copy.snakemake("--configfile=config/mine.yaml", "-n"), "corpora.mine.groups.0.folder", "data/nowhere")
+    said(
+        copy.snakemake("--configfile=config/mine.yaml", "-n"), "corpora.mine.groups.0.folder", "data/nowhere"
+    )
 
 
 def test_an_unknown_label_in_a_string(copy: Project) -> None:
@@ -51,7 +52,9 @@ def test_a_truncated_bvh(copy: Project) -> None:
 def test_a_glove_log_without_a_column(copy: Project) -> None:
     log = sorted((copy.path / "data" / "raw" / "janken").glob("*.csv"))[0]
     first, header, *rest = log.read_text().splitlines()
-    log.write_text("\n".join([first, header.replace(",s05", ""), *(r.rsplit(",", 1)[0] for r in rest)]) + "\n")
+    log.write_text(
+        "\n".join([first, header.replace(",s05", ""), *(r.rsplit(",", 1)[0] for r in rest)]) + "\n"
+    )
     said(copy.snakemake("results/janken/annotations.tsv"), log.name)
 
 

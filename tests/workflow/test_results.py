@@ -9,10 +9,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from tests.workflow.conftest import Project
 
 from miburi.hmm import Synthesis
 from miburi.render.film import decode
-from tests.workflow.conftest import Project
 
 TABLES = ("table1", "table2", "table3", "table4", "table5", "label_counts")
 
@@ -57,7 +57,9 @@ def test_artefacts_name_their_sources(finished: Project) -> None:
 
 
 def test_spliced_jumps_generated_does_not(finished: Project) -> None:
-    table = {r["quantity"]: r for r in rows(finished.path / "results/janken/synthesis/rock_scissors_paper.csv")}
+    table = {
+        r["quantity"]: r for r in rows(finished.path / "results/janken/synthesis/rock_scissors_paper.csv")
+    }
     generated = float(table["largest jump, generated"]["value"])
     spliced = float(table["largest jump at joins, spliced"]["value"])
     assert generated < 0.5 * spliced
