@@ -8,22 +8,23 @@ from miburi.render.sheets import rows, sheet
 
 def main(snakemake):
     synthesis = Synthesis.open(snakemake.input[0])
-    settings, note = (
-        snakemake.params.settings,
-        ", from simulated recordings" if snakemake.params.simulated else "",
-    )
+    settings = snakemake.params.settings
     motion = synthesis.motion(snakemake.wildcards.string)
+    kind = "simulated" if snakemake.params.simulated else "recorded"
+    title = f"{synthesis.string} (generated from {kind} intervals)"
     edges = synthesis.boundaries / motion.fps
-    captions = [(a, b, label + note) for a, b, label in zip(edges, edges[1:], synthesis.labels, strict=False)]
+    captions = list(zip(edges[:-1], edges[1:], synthesis.labels, strict=True))
     film(
         snakemake.output.film,
         motion,
         fps=settings["fps"],
         width=settings["width"],
         height=settings["height"],
+        title=title,
         captions=captions,
     )
-    sheet(snakemake.output.sheet, motion, rows(motion, columns=settings["columns"]), captions=synthesis.label)
+    strips = rows(motion, columns=settings["columns"])
+    sheet(snakemake.output.sheet, motion, strips, title=title, captions=synthesis.label)
 
 
 job.run(main, snakemake)  # noqa: F821

@@ -11,16 +11,16 @@ def main(snakemake):
     motion = artefacts.read_motions(snakemake.input[0], [take])[take]
     end = len(motion) if end_s is None else min(round(end_s * motion.fps), len(motion))
     motion = motion[round(start_s * motion.fps) : end]
-    title = f"{take}, simulated" if snakemake.params.simulated else take
+    title = f"{take} (a simulated person)" if snakemake.params.simulated else take
     film(
         snakemake.output.film,
         motion,
         fps=settings["fps"],
         width=settings["width"],
         height=settings["height"],
-        captions=[(0.0, len(motion) / motion.fps + 1.0, title)],
+        title=title,
     )
-    sheet(snakemake.output.sheet, motion, rows(motion, columns=settings["columns"]))
+    sheet(snakemake.output.sheet, motion, rows(motion, columns=settings["columns"]), title=title)
 
 
 job.run(main, snakemake)  # noqa: F821

@@ -8,9 +8,9 @@ from miburi.render.sheets import changes, sheet
 def main(snakemake):
     synthesis = Synthesis.open(snakemake.input[0])
     strips = changes(synthesis.labels, synthesis.boundaries, snakemake.params.changes)
-    if snakemake.params.simulated:
-        strips = [s._replace(title=f"{s.title}, from simulated recordings") for s in strips]
-    sheet(snakemake.output[0], synthesis.motion(), strips, captions=synthesis.label)
+    kind = "simulated" if snakemake.params.simulated else "recorded"
+    title = f"Changes of the hand, generated from {kind} intervals"
+    sheet(snakemake.output[0], synthesis.motion(), strips, title=title, captions=synthesis.label)
 
 
 job.run(main, snakemake)  # noqa: F821
