@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import csv
+import fcntl
 import hashlib
 import os
 import re
@@ -13,7 +15,18 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+import h5py
 import pytest
+
+GROUPS = {"test_kill": "kill", "test_slurm": "slurm"}
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Runs of the workflow share the machine's cores: those of a group follow one another."""
+    for item in items:
+        if item.path.parent == Path(__file__).parent:
+            item.add_marker(pytest.mark.xdist_group(GROUPS.get(item.path.stem, "workflow")))
+
 
 ROOT = Path(__file__).parents[2]
 PARTS = ("Snakefile", "workflow", "profiles", "config", "src")
@@ -113,7 +126,7 @@ def fresh(to: Path) -> Project:
     return Project(to)
 
 
-def kill(process: subprocess.Popen[str]) -> None:
+def kill_group(process: subprocess.Popen[str]) -> None:
     """Kill a process and all its children at once."""
     with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
@@ -130,12 +143,52 @@ def digests(folder: Path) -> dict[str, str]:
     return found
 
 
+MEASURED = ("table4.csv", "table5.csv", "report.html")  # show measured seconds
+
+
+def without_seconds(project: Project) -> dict[str, str]:
+    """Digests of all files; measured seconds are taken out of those that hold them."""
+    found = digests(project.path)
+    for name in list(found):
+        path = project.path / name
+        if path.name in MEASURED:
+            del found[name]
+        elif "/ranks/" in name:
+            found[name] = content(path)
+        elif "/scores/" in name:
+            with open(path, encoding="utf-8", newline="") as file:
+                rows = [{k: v for k, v in row.items() if k != "seconds"} for row in csv.DictReader(file)]
+            found[name] = str(rows)
+    return found
+
+
+def content(path: Path) -> str:
+    digest = hashlib.sha256()
+    with h5py.File(path) as file:
+        for name in ("query", "order", "score"):
+            digest.update(
+                file[name][()].tobytes() if name != "query" else str(list(file[name].asstr())).encode()
+            )
+    return digest.hexdigest()
+
+
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Project:
-    """A project whose workflow has run to its end once. Not to be changed: tests that change it take a copy."""
-    project = fresh(tmp_path_factory.mktemp("finished") / "miburi")
-    run = project.snakemake("all", "check")
-    assert run.status == 0, run.terminal[-4000:]
+    """A project whose workflow has run to its end once. Not to be changed: tests that change it take a copy.
+
+    All test processes share it: the first makes it, the others wait.
+    """
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    project, done = Project(shared / "finished"), shared / "finished.status"
+    with open(shared / "finished.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not done.exists():
+            fresh(project.path)
+            run = project.snakemake("all", "check")
+            done.write_text(str(run.status) + "\n" + run.terminal[-4000:])
+    status, _, terminal = done.read_text().partition("\n")
+    assert status == "0", terminal
     return project
 
 

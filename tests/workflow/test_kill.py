@@ -2,44 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import hashlib
 import os
 import signal
 import time
-from pathlib import Path
 
-import h5py
 import pytest
-from tests.workflow.conftest import Project, digests, fresh, kill
-
-MEASURED = ("table4.csv", "table5.csv", "report.html")  # show measured seconds
-
-
-def without_seconds(project: Project) -> dict[str, str]:
-    """Digests of all files; measured seconds are taken out of those that hold them."""
-    found = digests(project.path)
-    for name in list(found):
-        path = project.path / name
-        if path.name in MEASURED:
-            del found[name]
-        elif "/ranks/" in name:
-            found[name] = content(path)
-        elif "/scores/" in name:
-            with open(path, encoding="utf-8", newline="") as file:
-                rows = [{k: v for k, v in row.items() if k != "seconds"} for row in csv.DictReader(file)]
-            found[name] = str(rows)
-    return found
-
-
-def content(path: Path) -> str:
-    digest = hashlib.sha256()
-    with h5py.File(path) as file:
-        for name in ("query", "order", "score"):
-            digest.update(
-                file[name][()].tobytes() if name != "query" else str(list(file[name].asstr())).encode()
-            )
-    return digest.hexdigest()
+from tests.workflow.conftest import Project, fresh, kill_group, without_seconds
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +20,7 @@ def killed(tmp_path_factory: pytest.TempPathFactory) -> Project:
         if number == 2:  # Ctrl-C, then what a scheduler does when nobody listens
             os.killpg(process.pid, signal.SIGINT)
             time.sleep(3)
-        kill(process)
+        kill_group(process)
         locks = project.path / ".snakemake" / "locks"
         if number != 2 and any(locks.iterdir()):
             run = project.snakemake("-n")
