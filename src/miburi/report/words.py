@@ -1,0 +1,46 @@
+"""What the page says about each table and figure."""
+
+from __future__ import annotations
+
+TABLES = {
+    "table1": (
+        "Table 1 of [P]: who finds the motion among the first 10",
+        "Of the users of experiment 1, how many have a segment with the keyword among the first 10 (5). Protocol 1: "
+        "the clip that was shown is imitated; protocol 2: only the keyword is given. The rows `mean` are computed "
+        "from the rows, the paper's too; chance is what a random order would give.",
+    ),
+    "table2": (
+        "Table 2 of [P]: where the shown clip is ranked",
+        "Mean rank of the clip that the user saw and imitated, with a 95 % bootstrap interval and the mean rank in "
+        "a random order.",
+    ),
+    "table3": (
+        "Table 3 of [P]: the larger database",
+        "As table 1, for experiment 2: keywords alone, with and without the histograms of movement (Jvh).",
+    ),
+    "table4": (
+        "Table 4 of [P]: seconds per query, experiment 1",
+        "Median over all queries, one core of the machine that made this page; the paper's machine is of 2008.",
+    ),
+    "table5": ("Table 5 of [P]: seconds per query, experiment 2", "As table 4, for the larger database."),
+    "label_counts": (
+        "Table 2 of [H]: frames and intervals of each label",
+        "What the label files hold, and how long the string of labels becomes by each way of counting: with an "
+        "exit from the last state or without, durations exact or as the product that the paper prints (238 frames).",
+    ),
+}
+
+FIGURES = {
+    "fig4": (
+        "Figure 4 of [H]: the generated curve",
+        "The third joint of the middle finger in the generated motion; vertical lines are label boundaries.",
+    ),
+    "fig5": (
+        "Figure 5 of [H]: recordings put end to end",
+        "The same labels cut from the recordings: similar, but with steps at the joins.",
+    ),
+    "fig6": (
+        "Figure 6 of [H]: changes",
+        "Strips of rendered frames of the changes between the hand's poses.",
+    ),
+}
