@@ -37,7 +37,7 @@ def run(main: Callable[[Any], None], snakemake: Any) -> None:
         name = f"{error.filename}: " if error.filename else ""
         _fail(handler, f"{name}{error.strerror or error}")
     except Exception as error:
-        handler.stream.write(traceback.format_exc())
+        logging.error("%s", traceback.format_exc())
         _fail(
             handler,
             f"{type(error).__name__} in {snakemake.rule}: {error} (a defect; the traceback is in {log})",
@@ -46,8 +46,9 @@ def run(main: Callable[[Any], None], snakemake: Any) -> None:
 
 def _fail(handler: logging.FileHandler, sentence: str) -> None:
     sentence = " ".join(sentence.split())
-    handler.stream.write(f"{MARK}{sentence}\n")
     handler.close()
+    with open(handler.baseFilename, "a", encoding="utf-8") as log:
+        log.write(f"{MARK}{sentence}\n")
     print(sentence, file=sys.stderr)
     sys.stderr.flush()
     # not sys.exit: Snakemake would add a traceback of its own
