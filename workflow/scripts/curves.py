@@ -7,7 +7,7 @@ from miburi.hmm import Synthesis, by_label, splice
 from miburi.render import plots
 
 FLEXION = 3 * HAND.index("middle3") + 1
-YLABEL = "middle finger, third joint (degrees)"
+YLABEL = "middle finger,\nthird joint (degrees)"
 
 
 def main(snakemake):
