@@ -300,7 +300,8 @@ def check(config: Mapping[str, Any]) -> Config:
     try:
         return Config.model_validate(dict(config))
     except ValidationError as error:
-        first = error.errors()[0]
+        # a misspelt key is unknown, and may be missing under its right name: the former says more
+        first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
         key = ".".join(str(p) for p in first["loc"])
         if first["type"] == "extra_forbidden":
             near = _nearest(first["loc"], Config)

@@ -19,7 +19,7 @@ def test_a_misspelt_key(copy: Project) -> None:
 
 
 def test_a_config_that_is_no_yaml(copy: Project) -> None:
-    copy.edit("config/test.yaml", "corpora:", "corpora: [")
+    copy.edit("config/test.yaml", "\ncorpora:\n", "\ncorpora: [\n")
     run = copy.snakemake("-n")
     assert run.status != 0
     assert "Traceback" not in run.terminal
@@ -76,7 +76,7 @@ def test_a_damaged_artefact(copy: Project) -> None:
 def test_a_set_aside_recording(copy: Project, damage: bytes) -> None:
     take = sorted((copy.path / "data" / "raw" / "everyday").glob("*.bvh"))[0]
     take.write_bytes(damage)
-    copy.edit("config/test.yaml", "corpora:", "on_error: skip\n\ncorpora:")
+    copy.edit("config/test.yaml", "\ncorpora:\n", "\non_error: skip\n\ncorpora:\n")
     run = copy.snakemake("--allowed-rules", "ingest", "annotations", "--", "results/everyday/skipped.csv")
     assert run.status == 0, run.terminal[-3000:]
     assert take.stem in (copy.path / "results/everyday/skipped.csv").read_text()

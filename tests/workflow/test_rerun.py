@@ -19,7 +19,7 @@ def test_nothing_changed_nothing_planned(finished: Project) -> None:
 
 
 def test_a_comment_in_the_config(copy: Project) -> None:
-    copy.edit("config/test.yaml", "corpora:", "# a thought\ncorpora:")
+    copy.edit("config/test.yaml", "\ncorpora:\n", "\n# a thought\ncorpora:\n")
     assert planned(copy) == {}
 
 

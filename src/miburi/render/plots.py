@@ -284,6 +284,6 @@ def _axes(path: Path, title: str, height: float = 2.1) -> Iterator[Any]:
         axes = plot.add_subplot()
         yield axes
         if title:
-            plot.suptitle(title, x=0.01, y=1.02 + 0.12 / height, ha="left", va="bottom", fontsize=8.5)
+            plot.suptitle(title, x=0.01, y=0.96 + 0.08 / height, ha="left", va="bottom", fontsize=8.5)
         with store.replaced(path) as temporary:
             plot.savefig(temporary, dpi=220, metadata=_STAMPS[kind], bbox_inches="tight", pad_inches=0.05)
