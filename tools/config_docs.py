@@ -1,7 +1,7 @@
 """Writes what follows from the config's model: its JSON schema and the table of keys in config/README.md.
 
-    python tools/config_docs.py            # write
-    python tools/config_docs.py --check    # fail if they are out of date
+python tools/config_docs.py            # write
+python tools/config_docs.py --check    # fail if they are out of date
 """
 
 import json
@@ -38,7 +38,9 @@ def main() -> int:
     stale = [p for p, text in files().items() if not p.exists() or p.read_text(encoding="utf-8") != text]
     if "--check" in sys.argv:
         for path in stale:
-            print(f"{path.relative_to(ROOT)} is out of date; run python tools/config_docs.py", file=sys.stderr)
+            print(
+                f"{path.relative_to(ROOT)} is out of date; run python tools/config_docs.py", file=sys.stderr
+            )
         return int(bool(stale))
     for path, text in files().items():
         path.write_text(text, encoding="utf-8")

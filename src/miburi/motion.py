@@ -78,7 +78,7 @@ class Skeleton:
             raise InputError(f"{who}: joint {twice[0]!r} stands twice")
         if self.parents[0] != -1 or any(not 0 <= p < i for i, p in enumerate(self.parents[1:].tolist(), 1)):
             raise InputError(f"{who}: the root must come first and every joint after its parent")
-        if len(self.ends) and not (0 <= self.ends.min() and self.ends.max() < n):
+        if len(self.ends) and not (self.ends.min() >= 0 and self.ends.max() < n):
             raise InputError(f"{who}: an end belongs to no joint")
         if not (np.isfinite(self.offsets).all() and np.isfinite(self.end_offsets).all()):
             raise InputError(f"{who}: an offset is not finite")

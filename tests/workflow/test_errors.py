@@ -23,7 +23,7 @@ def test_a_config_that_is_no_yaml(copy: Project) -> None:
     run = copy.snakemake("-n")
     assert run.status != 0
     assert "Traceback" not in run.terminal
-    assert "config/test.yaml" in run.terminal
+    assert "not valid JSON or YAML" in run.last
 
 
 def test_a_wrong_path(copy: Project) -> None:

@@ -21,7 +21,7 @@ _LONG = {"l": "Left", "r": "Right"}
 
 # Where the elbow points for directions of the hand from the shoulder: (out, up, ahead) → (out, up, ahead).
 _ELBOWS = (
-    ((0.0, -1.0, 0.0), (0.35, 0.0, -1.0)),
+    ((0.0, -1.0, 0.0), (0.2, 0.0, -1.0)),
     ((0.0, 0.0, 1.0), (0.5, -1.0, 0.0)),
     ((1.0, 0.0, 0.0), (0.0, -0.8, -0.6)),
     ((0.0, 1.0, 0.0), (1.0, 0.0, 0.5)),
