@@ -84,9 +84,11 @@ def test_other_formats_and_versions_are_refused(tmp_path, monkeypatch):
             pass
     with h5py.File(tmp_path / "foreign.h5", "w") as file:
         file["x"] = 1
-    with pytest.raises(InputError, match="its format is None"):
-        with store.open_checked(tmp_path / "foreign.h5", "test"):
-            pass
+    with (
+        pytest.raises(InputError, match="its format is None"),
+        store.open_checked(tmp_path / "foreign.h5", "test"),
+    ):
+        pass
     with pytest.raises(InputError, match=r"b\.h5: there is no such file"):
         with store.open_checked(tmp_path / "b.h5", "test"):
             pass

@@ -18,7 +18,7 @@ BEGIN, END = "<!-- keys -->\n", "<!-- end of keys -->\n"
 
 def table() -> str:
     rows = ["| key | default | meaning |", "|---|---|---|"]
-    for key, default, meaning in config.keys():
+    for key, default, meaning in config.all_keys():
         shown = f"`{default}`" if default else ""
         rows.append(f"| `{key}` | {shown} | {meaning.replace('|', '&#124;')} |")
     return "\n".join(rows) + "\n"

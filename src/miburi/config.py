@@ -347,7 +347,7 @@ def schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Config.model_json_schema()}
 
 
-def keys(model: type[BaseModel] = Config, prefix: str = "") -> list[tuple[str, str, str]]:
+def all_keys(model: type[BaseModel] = Config, prefix: str = "") -> list[tuple[str, str, str]]:
     """Every key as (dotted name, default as YAML, description); `*` stands for a name of the user's."""
     import yaml
 
@@ -367,5 +367,5 @@ def keys(model: type[BaseModel] = Config, prefix: str = "") -> list[tuple[str, s
         rows.append((dotted, default, info.description or ""))
         if inner is not None:
             star = ".*" if "dict[" in text else "[]" if "list[" in text else ""
-            rows += keys(inner, f"{dotted}{star}.")
+            rows += all_keys(inner, f"{dotted}{star}.")
     return rows

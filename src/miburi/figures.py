@@ -47,7 +47,9 @@ def _hand() -> Skeleton:
             offset = along * bone
         ends.append(parent)
         end_offsets.append(offset / 1000)
-    return Skeleton(tuple(joints), np.array(parents), np.array(offsets), "hand", np.array(ends), np.array(end_offsets))
+    return Skeleton(
+        tuple(joints), np.array(parents), np.array(offsets), "hand", np.array(ends), np.array(end_offsets)
+    )
 
 
 HAND: Skeleton = _hand()

@@ -149,7 +149,9 @@ class Motion:
             if self.angles is not None:
                 object.__setattr__(self, "angles", _frozen(self.angles, np.float64, (t, 3 * j)))
         except ValueError as error:
-            raise InputError(f"take {self.name!r}: arrays of {j} joints do not fit together: {error}") from None
+            raise InputError(
+                f"take {self.name!r}: arrays of {j} joints do not fit together: {error}"
+            ) from None
         object.__setattr__(self, "fps", float(self.fps))
         if not (np.isfinite(self.fps) and self.fps > 0):
             raise InputError(f"take {self.name!r}: {self.fps} frames per second, expected a positive number")

@@ -67,7 +67,9 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
 
 @contextmanager
-def create(path: str | os.PathLike[str], kind: str, made_from: Mapping[str, str] | None = None) -> Iterator[h5py.File]:
+def create(
+    path: str | os.PathLike[str], kind: str, made_from: Mapping[str, str] | None = None
+) -> Iterator[h5py.File]:
     """An artefact to fill, of the format "miburi/<kind>"; it appears under its name when it is complete."""
     with replaced(path) as temporary, h5py.File(temporary, "w", track_order=False) as file:
         file.attrs["format"] = f"miburi/{kind}"

@@ -19,7 +19,9 @@ Metric = dict[str, Any]
 _RELATIVE = 0.02  # kernels may sum in another order on another machine, which moves ranks a little
 
 
-def _metric(value: float | np.floating[Any], unit: str, better: str, tolerance: float | None = None) -> Metric:
+def _metric(
+    value: float | np.floating[Any], unit: str, better: str, tolerance: float | None = None
+) -> Metric:
     if tolerance is None:
         tolerance = 0.0 if better == "equal" else round(_RELATIVE * abs(float(value)), 6)
     return {"value": round(float(value), 6), "unit": unit, "better": better, "tolerance": tolerance}
