@@ -75,13 +75,17 @@ def test_the_same_content_is_the_same_bytes(tmp_path):
 
 def test_other_formats_and_versions_are_refused(tmp_path, monkeypatch):
     path = filled(tmp_path / "a.h5")
-    with pytest.raises(InputError, match=r"a\.h5: its format is 'miburi/test', expected 'miburi/motion'"):
-        with store.open_checked(path, "motion"):
-            pass
+    with (
+        pytest.raises(InputError, match=r"a\.h5: its format is 'miburi/test', expected 'miburi/motion'"),
+        store.open_checked(path, "motion"),
+    ):
+        pass
     monkeypatch.setattr(store, "VERSION", 7)
-    with pytest.raises(InputError, match="its version is 1, this miburi reads version 7"):
-        with store.open_checked(path, "test"):
-            pass
+    with (
+        pytest.raises(InputError, match="its version is 1, this miburi reads version 7"),
+        store.open_checked(path, "test"),
+    ):
+        pass
     with h5py.File(tmp_path / "foreign.h5", "w") as file:
         file["x"] = 1
     with (
@@ -89,9 +93,11 @@ def test_other_formats_and_versions_are_refused(tmp_path, monkeypatch):
         store.open_checked(tmp_path / "foreign.h5", "test"),
     ):
         pass
-    with pytest.raises(InputError, match=r"b\.h5: there is no such file"):
-        with store.open_checked(tmp_path / "b.h5", "test"):
-            pass
+    with (
+        pytest.raises(InputError, match=r"b\.h5: there is no such file"),
+        store.open_checked(tmp_path / "b.h5", "test"),
+    ):
+        pass
 
 
 def _read(path):
