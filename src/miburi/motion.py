@@ -69,7 +69,8 @@ class Skeleton:
         who = f"skeleton {self.name!r}"
         if len(self.parents) != n or len(self.offsets) != n or n == 0:
             raise InputError(
-                f"{who}: {n} joints, {len(self.parents)} parents and {len(self.offsets)} offsets, expected as many of each"
+                f"{who}: {n} joints, {len(self.parents)} parents and {len(self.offsets)} offsets, "
+                "expected as many of each"
             )
         if len(self.ends) != len(self.end_offsets):
             raise InputError(f"{who}: {len(self.ends)} ends and {len(self.end_offsets)} end offsets")
