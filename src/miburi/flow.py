@@ -317,10 +317,15 @@ def plan(config: Mapping[str, Any]) -> Flow:
     return flow
 
 
-def say_last(logs: Sequence[str]) -> None:
-    """Repeat the sentences of failed jobs when the program ends, so that they are the last on the terminal."""
-    lines = [line for log in logs for line in job.lines(log)]
-    failed = [m.group(1) for line in lines if (m := re.match(r"\s+log: (.+?) \(check log file", line))]
-    said = list(dict.fromkeys(s for path in failed if (s := job.sentence(path))))
+def say_last(since: float) -> None:
+    """Repeat the sentences of failed jobs when the program ends, so that they are the last on the terminal.
+
+    Parameters
+    ----------
+    since
+        When the run began (`time.time`): only jobs that failed later count.
+    """
+    logs = [path for path in Path("results/logs").rglob("*.log") if path.stat().st_mtime >= since]
+    said = list(dict.fromkeys(found for path in sorted(logs) if (found := job.sentence(path))))
     if said:
         atexit.register(lambda: print("\n" + "\n".join(said), file=sys.stderr, flush=True))

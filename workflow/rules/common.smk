@@ -1,6 +1,7 @@
 # What all rules share: the checked config, takes and shards, digests of code, sizes of jobs. No rules.
 
 import os
+import time
 from pathlib import Path
 
 from miburi import corpora, flow
@@ -12,6 +13,7 @@ os.environ.update(
 )
 
 SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
+STARTED = time.time()
 FLOW = flow.plan(config)
 CONFIG = FLOW.config
 
@@ -43,4 +45,4 @@ def minutes(base, per_mb=0.0):
 
 
 onerror:
-    flow.say_last(log)
+    flow.say_last(STARTED)
