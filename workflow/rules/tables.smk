@@ -48,6 +48,7 @@ if CONFIG.tables.string:
             mem_mb=megabytes(500),
             runtime=minutes(5),
         params:
+            string=FLOW.string(CONFIG.tables.string)["labels"],
             simulated=FLOW.simulated(FLOW.shown_corpus()),
             code=code("label_counts.py"),
         script:

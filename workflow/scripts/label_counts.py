@@ -13,7 +13,7 @@ def main(snakemake):
     with open(snakemake.input.lengths, encoding="utf-8", newline="") as file:
         lengths = list(csv.DictReader(file))
     kind = "simulated" if snakemake.params.simulated else "recorded"
-    write_table(snakemake.output[0], label_counts(intervals, lengths, kind))
+    write_table(snakemake.output[0], label_counts(intervals, lengths, snakemake.params.string, kind))
 
 
 job.run(main, snakemake)  # noqa: F821

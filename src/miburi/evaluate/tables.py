@@ -214,7 +214,7 @@ _TABLES: dict[str, Callable[[str, Sequence[Score], int], list[Row]]] = {
 
 
 def label_counts(
-    intervals: Sequence[tuple[str, int]], lengths: Sequence[Mapping[str, str]], recordings: str
+    intervals: Sequence[tuple[str, int]], lengths: Sequence[Mapping[str, str]], string: str, recordings: str
 ) -> list[Row]:
     """[H]'s table 2 and the length of its string.
 
@@ -224,9 +224,12 @@ def label_counts(
         Label and frames of each labelled interval.
     lengths
         Rows `quantity`, `value`, `unit` of the string that was synthesised.
+    string
+        Its labels; the printed length stands beside [H]'s own string only.
     recordings
         "simulated" or "recorded".
     """
+    printed_length = printed.LENGTH if string.split() == printed.STRING.split() else ""
     theirs = {r["label"]: r for r in printed.table("label_counts")}
     labels = _ordered([label for label, _ in intervals], list(theirs))
     rows = []
@@ -250,7 +253,7 @@ def label_counts(
                     "quantity": row["quantity"],
                     "label": "",
                     "value": row["value"],
-                    "paper": printed.LENGTH,
+                    "paper": printed_length,
                     "unit": "frames",
                 }
             )

@@ -5,8 +5,11 @@ from __future__ import annotations
 import csv
 from importlib import resources
 
+STRING = "r rs s sp p pr r rp p ps s sr r"
+"""The string of labels that [H] synthesises."""
+
 LENGTH = 238
-"""Frames of the string that [H] prints."""
+"""Frames of that string, as printed."""
 
 SEGMENTS = {"table1": 269, "table2": 269, "table3": 3065, "table4": 269, "table5": 3065}
 """Segments that [P] ranks in each table's experiment."""
