@@ -30,8 +30,7 @@ def main(snakemake):
     for path in films:
         name, sheet = Path(path).stem, path.replace(".mp4", "_sheet.png")
         source = embedded(path) if carried else str(Path(path).relative_to("results"))
-        alt = f"{name} of {Path(path).parts[-3]}"
-        words = "The film, and pictures from it."
+        alt, words = f"{name} of {Path(path).parts[-3]}", "The film, and pictures from it."
         pictures = (Picture(embedded(sheet), f"pictures of {alt}"),)
         sections.append(
             Section(f"film-{name}", f"Film: {alt}", words, path, None, pictures, (Film(source, alt),))
@@ -42,19 +41,16 @@ def main(snakemake):
         sections.append(Section(Path(path).stem, title, words, path, read_table(path, mean=by)))
     for path in given.searches:
         name, where = Path(path).stem, Path(path).parts[-3]
-        words = "The ten segments that are nearest to this puppet log."
+        words = "The ten segments that are nearest to this log."
         sections.append(
             Section(f"search-{where}-{name}", f"Search: {name} in {where}", words, path, read_table(path, 10))
         )
     for path in given.skipped:
         table = read_table(path)
         if table.rows:
-            title = f"Set aside in {Path(path).parent.name}"
-            sections.append(
-                Section(
-                    f"skipped-{Path(path).parent.name}", title, "Recordings that cannot be read.", path, table
-                )
-            )
+            name = Path(path).parent.name
+            words = "Recordings that cannot be read."
+            sections.append(Section(f"skipped-{name}", f"Set aside in {name}", words, path, table))
     about = snakemake.params.corpora
     corpora = [corpus(path, about[Path(path).parent.name]) for path in given.takes]
     store.write_text(snakemake.output[0], page(sections, corpora))

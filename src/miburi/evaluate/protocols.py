@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from miburi.artefacts import Segment
 from miburi.errors import InputError
 from miburi.evaluate.queries import Query
 from miburi.evaluate.ranks import Ranks
+from miburi.evaluate.rows import names, read_rows
 from miburi.evaluate.statistics import chance_of_hit, chance_rank
 
 Path = str | os.PathLike[str]
@@ -144,28 +145,12 @@ def write_scores(path: Path, scores: Sequence[Score]) -> None:
     """Write scores as a CSV, a column for each field of `Score`."""
     with store.replaced(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
-        names = [f.name for f in fields(Score)]
-        table.writerow(names)
+        table.writerow(names(Score))
         for row in scores:
-            values = [getattr(row, n) for n in names]
+            values = [getattr(row, n) for n in names(Score)]
             table.writerow([f"{v:.6g}" if isinstance(v, float) else v for v in values])
 
 
 def read_scores(path: Path) -> list[Score]:
     """Read scores; InputError names a missing column or a line that cannot be read."""
-    with open(path, encoding="utf-8", newline="") as file:
-        table = csv.DictReader(file)
-        for f in fields(Score):
-            if f.name not in (table.fieldnames or []):
-                raise InputError(f"{path}, line 1: the column {f.name!r} is missing")
-        found = []
-        for line, row in enumerate(table, 2):
-            try:
-                cells = {
-                    f.name: {"int": int, "float": float}.get(str(f.type), str)(row[f.name])
-                    for f in fields(Score)
-                }
-            except (TypeError, ValueError):
-                raise InputError(f"{path}, line {line}: a number cannot be read") from None
-            found.append(Score(**cells))
-    return found
+    return read_rows(path, Score)

@@ -13,7 +13,7 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass, fields, replace
+from dataclasses import astuple, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from miburi import store
 from miburi.artefacts import Segment
 from miburi.errors import InputError
+from miburi.evaluate.rows import names, read_rows
 from miburi.formats.annotations import Annotation
 from miburi.perform.puppeteer import User
 
@@ -129,7 +130,7 @@ def plan_queries(
     queries = []
     for protocol in protocols:
         for keyword in keywords:
-            mine = [i for i, names in enumerate(found) if keyword in names]
+            mine = [i for i, words in enumerate(found) if keyword in words]
             if not mine:
                 known = ", ".join(sorted(frozenset().union(*found))) or "none"
                 raise InputError(
@@ -194,7 +195,7 @@ def write_queries(path: Path, queries: Sequence[Query]) -> None:
     """Write queries as a TSV, a column for each field of `Query`."""
     with store.replaced(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, delimiter="\t", lineterminator="\n")
-        table.writerow([f.name for f in fields(Query)])
+        table.writerow(names(Query))
         table.writerows(astuple(q) for q in queries)
 
 
@@ -206,20 +207,4 @@ def read_queries(path: Path) -> list[Query]:
     InputError
         A column is missing, or a cell is no number; the sentence names the line.
     """
-    with open(path, encoding="utf-8", newline="") as file:
-        table = csv.DictReader(file, delimiter="\t")
-        wanted = [f.name for f in fields(Query)]
-        for column in wanted:
-            if column not in (table.fieldnames or []):
-                raise InputError(f"{path}, line 1: the column {column!r} is missing")
-        found = []
-        for line, row in enumerate(table, 2):
-            try:
-                values = {
-                    f.name: {"int": int, "float": float}.get(str(f.type), str)(row[f.name])
-                    for f in fields(Query)
-                }
-            except (TypeError, ValueError):
-                raise InputError(f"{path}, line {line}: a number cannot be read") from None
-            found.append(Query(**values))
-    return found
+    return read_rows(path, Query, "\t")
