@@ -243,7 +243,7 @@ class Config(Model):
         "stop", description="A damaged recording stops its corpus, or is set aside and listed in skipped.csv."
     )
     shard_seconds: float = Field(
-        240.0, gt=0, description="About how many seconds of motion one job processes."
+        600.0, gt=0, description="About how many seconds of motion one job processes."
     )
     corpora: dict[Name, Corpus] = Field(min_length=1, description="The sets of recordings.")
     segment: Segmentation = Field(default_factory=Segmentation, description="Segmentation.")

@@ -5,12 +5,15 @@ from miburi.retrieval.index import Index
 
 
 def main(snakemake):
-    features, segments = [], []
+    values, segments = {}, []
     for path in snakemake.input:
         takes, pieces, _ = artefacts.read_features(path)
-        place = {take: len(features) + i for i, take in enumerate(takes)}
-        features += takes.values()
-        segments += [(take, place[take], start, end) for take, start, end in pieces]
+        values |= takes
+        segments += pieces
+    # in the order of takes' names, so that shards of another size give the same index
+    place = {take: i for i, take in enumerate(sorted(values))}
+    features = [values[take] for take in place]
+    segments = [(take, place[take], start, end) for take, start, end in sorted(segments)]
     p = snakemake.params
     index = Index.build(features, segments, dims=p.dims, samples=p.samples, seed=p.seed)
     index.save(snakemake.output[0], store.sources(*snakemake.input))

@@ -17,7 +17,7 @@ def main(snakemake):
         takes = {row["take"]: row for row in csv.DictReader(file)}
     fps = {take: float(row["fps"]) for take, row in takes.items()}
     subjects = {take: row["subject"] for take, row in takes.items()}
-    segments = [s for path in snakemake.input.segments for s in artefacts.read_segments(path)]
+    segments = sorted(s for path in snakemake.input.segments for s in artefacts.read_segments(path))
     players = {u.name: u for u in users(name, wanted["split"], wanted["users"], seed)}
     queries = plan_queries(
         name,
