@@ -1,6 +1,6 @@
 # make          set up, then the default results
 # make test     set up, then the tests
-# make setup    set up alone: .venv from requirements.lock, libraries for headless OpenGL
+# make setup    set up alone: .venv from requirements.lock, libraries for headless OpenGL, venv
 # make bench    speed against other people's implementations
 # make lint     what CI checks beside the tests
 # make lock     fix versions and hashes anew (needs a network)
@@ -29,8 +29,6 @@ system:
 		"name one: make PYTHON=/path/to/python3.11" >&2; exit 1; }
 	@$(PYTHON) -c '$(NEW_ENOUGH)' || { echo "miburi needs Python 3.11 or later," \
 		"$(PYTHON) is not: make PYTHON=/path/to/python3.11" >&2; exit 1; }
-	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { echo "$(PYTHON) has no module venv or ensurepip;" \
-		"on Debian and Ubuntu: sudo apt-get install python3-venv" >&2; exit 1; }
 	@PYTHON=$(PYTHON) sh tools/system-packages.sh
 
 # The copy of the lock is the last thing that is written: a set-up that was cut off begins again from nothing.

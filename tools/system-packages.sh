@@ -1,25 +1,38 @@
 #!/bin/sh
-# Headless OpenGL: libEGL and libGL with Mesa's software renderer. Installs what is missing where it may.
+# What Python's packages do not bring: venv, and libEGL and libGL with Mesa's software renderer to draw without a
+# display. Installs what is missing where it may; otherwise names the one command.
 set -eu
 
-here() {
-    "${PYTHON:-python3}" -c '
+python=${PYTHON:-python3}
+
+venv_here() {
+    "$python" -c 'import venv, ensurepip' 2>/dev/null
+}
+
+gl_here() {
+    "$python" -c '
 import ctypes
 for name in ("libEGL.so.1", "libGL.so.1"):
     ctypes.CDLL(name)
 ' 2>/dev/null
 }
 
-here && exit 0
-install="apt-get install --no-install-recommends --yes libegl1 libgl1"
+missing() {
+    gl_here || echo libegl1 libgl1
+    venv_here || "$python" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])'
+}
+
+packages=$(missing | tr '\n' ' ')
+[ -n "$packages" ] || exit 0
+install="apt-get install --no-install-recommends --yes ${packages% }"
 if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
-    echo "installing libegl1 and libgl1, to draw without a display"
+    echo "installing ${packages% }"
     export DEBIAN_FRONTEND=noninteractive
     # lists that cannot be renewed may still be good enough
     apt-get update -qq || true
-    if $install -qq >/dev/null && here; then
+    if $install -qq >/dev/null && gl_here && venv_here; then
         exit 0
     fi
 fi
-echo "drawing without a display needs libEGL.so.1 and libGL.so.1; on Debian and Ubuntu: sudo $install" >&2
+echo "miburi needs ${packages% }; on Debian and Ubuntu: sudo $install" >&2
 exit 1

@@ -69,7 +69,7 @@ class Project:
     def environment(self) -> dict[str, str]:
         return {**os.environ, "PYTHONPATH": str(self.path / "src"), "COLUMNS": "200"}
 
-    def snakemake(self, *arguments: str, timeout: float = 400) -> Run:
+    def snakemake(self, *arguments: str, timeout: float = 1200) -> Run:
         """Run snakemake on the small config, with more arguments."""
         if not any(a.startswith("--configfile") for a in arguments):
             arguments = (
@@ -184,6 +184,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Project:
     with open(shared / "finished.lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not done.exists():
+            shutil.rmtree(project.path, ignore_errors=True)  # of a test process that was stopped
             fresh(project.path)
             run = project.snakemake("all", "check")
             done.write_text(str(run.status) + "\n" + run.terminal[-4000:])
