@@ -31,7 +31,7 @@ _DRAGGED[1:5, 1:5] = [
 are more their own than middle and ring finger (Häger-Ross and Schieber 2000)."""
 _ALONE = 35.0
 """Degrees by which the ring finger can be straighter than the mean of its neighbours: their tendons are joined."""
-_VARIES = {"closed": 2.4, "open knuckle": 6.0, "open middle": 6.0, "other": 2.0}
+_VARIES = {"closed": 2.4, "open knuckle": 7.0, "open middle": 8.0, "other": 2.0}
 """Degrees by which poses differ from hold to hold; a fist ends at the palm, so it varies less."""
 _RELAXES = 0.35
 """Chance that an open hand was stretched too far and relaxes within the hold."""
@@ -56,7 +56,7 @@ def wander(rng: np.random.Generator, n: int, memory: float) -> Floats:
 def minimum_jerk(phase: Floats) -> Floats:
     """Share of the way at a share of the time (Flash and Hogan 1985): 10 u³ − 15 u⁴ + 6 u⁵."""
     u = np.clip(phase, 0.0, 1.0)
-    return u**3 * (10 - 15 * u + 6 * u**2)
+    return u * u * u * (10 - 15 * u + 6 * u * u)
 
 
 def _settling(frames: Floats, time: Floats | float) -> Floats:
@@ -220,7 +220,7 @@ def _timing(changes: Sequence[Interval], rng: np.random.Generator) -> tuple[Floa
 
 def _tremor(frames: int, rng: np.random.Generator) -> Floats:
     """Physiological tremor (6-12 Hz, about 0.1°) and slow unrest (below 1 Hz, about 0.4°) of the bends;
-    the rest moves less: (T, 22) degrees."""
+    the rest moves a little less: (T, 22) degrees."""
     from scipy.signal import butter, sosfilt
 
     noise = rng.standard_normal((frames + 120, FINGERS)) @ _COUPLED.T
@@ -229,4 +229,4 @@ def _tremor(frames: int, rng: np.random.Generator) -> Floats:
     fast = sosfilt(butter(2, (6.0, 12.0), "bandpass", fs=FPS, output="sos"), both, axis=0)[120:]
     slow = sosfilt(butter(2, 0.7, "lowpass", fs=FPS, output="sos"), both, axis=0)[120:]
     slow *= 0.4 / max(float(slow.std()), 1e-9)
-    return np.asarray((0.12 * fast + slow) * np.where(FLEXES, 1.0, 0.4))
+    return np.asarray((0.12 * fast + slow) * np.where(FLEXES, 1.0, 0.8))
