@@ -14,13 +14,14 @@ from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from miburi import store
 from miburi.errors import InputError
 from miburi.evaluate.rows import names
 from miburi.evaluate.statistics import chance_rank
 from miburi.formats import puppet
-from miburi.motion import Floats, Motion
+from miburi.motion import Motion
 from miburi.perform.puppeteer import User, imitate
 from miburi.retrieval.body import features, reset_yaw
 from miburi.retrieval.index import Index
@@ -98,7 +99,7 @@ def read_targets(path: Path, template: str) -> list[Target]:
     return found
 
 
-def rank_of(index: Index, x: Floats, take: str, measure: str, reduction: str) -> float:
+def rank_of(index: Index, x: ArrayLike, take: str, measure: str, reduction: str) -> float:
     """Rank, from 1, of the first segment of a take for a query x (T, 42); ties count at their middle."""
     found = ranking(index.distances(x, measure, reduction=reduction))
     here = [place for place, i in enumerate(found.order) if index.take[i] == take]
