@@ -38,5 +38,6 @@ rule all:
         FLOW.figures(),
         FLOW.films(),
         FLOW.searches(),
+        FLOW.comparisons(),
         "results/metrics.json",
         "results/report.html",

@@ -195,6 +195,13 @@ class Search(Model):
     simulated: bool = Field(
         False, description="The logs are a simulator's; those whose first line says so need not be told."
     )
+    targets: str = Field(
+        "",
+        description="TSV whose column `query` names logs of the folder that imitate takes of the corpus; development users imitate them too (results/{corpus}/puppeteers.csv). `{recordings}` is filled in.",
+    )
+    target: str = Field(
+        "{take}", description="The take that a log imitates, made of that table's columns in braces."
+    )
 
 
 class Experiment(Model):

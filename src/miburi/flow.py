@@ -255,20 +255,45 @@ class Flow:
             for ending in (".mp4", "_sheet.png")
         ]
 
+    def own_logs(self, corpus: str) -> dict[str, str]:
+        """Puppet logs in the folder that the config names for a corpus: name → path."""
+        search = self.config.search.get(corpus)
+        return _puppet_logs(_with_recordings(search.folder, self.config.recordings)) if search else {}
+
     def logs(self, corpus: str) -> dict[str, str]:
         """Puppet logs that are ranked in a corpus: name → path. data/puppet serves every corpus."""
-        folders = ["data/puppet"]
-        if corpus in self.config.search:
-            folders.insert(0, _with_recordings(self.config.search[corpus].folder, self.config.recordings))
-        found: dict[str, str] = {}
-        for folder in folders:
-            for path in sorted([*Path(folder).glob("*.csv"), *Path(folder).glob("*.csv.gz")]):
-                found.setdefault(path.name.removesuffix(".gz").removesuffix(".csv"), str(path))
-        return found
+        found = self.own_logs(corpus)
+        return found | {name: path for name, path in _puppet_logs("data/puppet").items() if name not in found}
 
     def searches(self) -> list[str]:
         """Rankings of the logs in the folders that the config names."""
         return [f"results/{c}/search/{q}.csv" for c in self.config.search for q in self.logs(c)]
+
+    def targets(self, corpus: str) -> str:
+        """Table of what a corpus' logs imitate."""
+        return str(_with_recordings(self.config.search[corpus].targets, self.config.recordings))
+
+    def to_compare(self, corpus: str) -> dict[str, Any]:
+        """What comparing our users with a corpus' logs needs: those of its first experiment."""
+        search = self.config.search[corpus]
+        name, experiment = next((n, e) for n, e in self.config.experiments.items() if e.corpus == corpus)
+        return {
+            "experiment": name,
+            "users": experiment.users,
+            "measures": experiment.measures,
+            "target": search.target,
+            "queries": list(self.own_logs(corpus)),
+            "simulated": search.simulated,
+        }
+
+    def comparisons(self) -> list[str]:
+        """Comparisons of our users with logs of another origin, where there are such logs."""
+        played = {e.corpus for e in self.config.experiments.values()}
+        return [
+            f"results/{c}/puppeteers.csv"
+            for c, search in self.config.search.items()
+            if search.targets and c in played and Path(self.targets(c)).exists()
+        ]
 
     def simulated_log(self, corpus: str, query: str) -> bool:
         """Whether the config says that a log is a simulator's."""
@@ -290,6 +315,14 @@ class Flow:
         if film is not None and film.corpus == corpus:
             return film.take, film.start_s, film.end_s
         return name, 0.0, None
+
+
+def _puppet_logs(folder: str) -> dict[str, str]:
+    """Name → path of the puppet logs in a folder."""
+    found: dict[str, str] = {}
+    for path in sorted([*Path(folder).glob("*.csv"), *Path(folder).glob("*.csv.gz")]):
+        found.setdefault(path.name.removesuffix(".gz").removesuffix(".csv"), str(path))
+    return found
 
 
 def one_of(names: Iterable[str]) -> str:

@@ -13,12 +13,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import miburi
 from miburi.figures import FINGERS, HAND
 from miburi.formats import columns, glove, read_annotations, read_labels
 from miburi.perform import janken
-from miburi.perform.janken import wearer
+from miburi.perform.janken import hand, wearer
+from miburi.perform.janken.device import Device, played
+from miburi.perform.janken.sensors import FINGER, FITTED, POSES, SENSORS
 
 # [H], table 2: frames, intervals
 TABLE_2 = {
@@ -108,17 +112,17 @@ def test_lengths_vary_and_add_up():
 
 def test_raw_counts(takes):
     gains = [abs(s["gain"]) for s in janken.calibration().values() if s]
-    assert min(gains) >= 0.25 and max(gains) <= 1.1
+    assert min(gains) >= 0.2 and max(gains) <= 1.2
     for counts, labels in takes.values():
         assert counts.dtype == np.int64 and counts.shape[1] == 22
         assert counts.min() >= 0 and counts.max() <= 255
         for start, end, label in labels:
             if len(label) == 1 and end - start > 12:
                 core = counts[start + 5 : end - 5]
-                assert np.abs(np.diff(core, axis=0)).max() <= 6  # no jumps in a hold
+                assert np.abs(np.diff(core, axis=0)).max() <= 14  # a stretched hand that relaxes
         # noise lies below a count: a hold is runs of one count
         still = np.concatenate([np.diff(counts[s + 5 : e - 5], axis=0) for s, e, n in labels if len(n) == 1])
-        assert np.mean(np.abs(still) <= 1) > 0.95 and np.mean(still == 0) > 0.4
+        assert np.mean(np.abs(still) <= 1) > 0.95 and np.mean(still == 0) > 0.8
 
 
 def test_seeds(takes):
@@ -196,7 +200,7 @@ def test_fingers_do_not_move_in_lockstep(folder, takes):
 def test_intervals_differ_and_holds_sag(folder, takes):
     for label, joint, least, most in (
         ("r", "middle2", 0.8, 6.0),
-        ("p", "index1", 2.0, 10.0),
+        ("p", "index1", 4.0, 12.0),
         ("s", "ring1", 2.0, 10.0),
     ):
         assert least < holds(folder, takes, label, joint).std() < most
@@ -218,10 +222,10 @@ def test_small_is_a_part_that_has_every_label(takes):
 
 def test_minimum_jerk_is_flash_and_hogans():
     u = np.linspace(0, 1, 501)
-    s = wearer._minimum_jerk(u)
+    s = hand.minimum_jerk(u)
     assert s[0] == 0 and s[-1] == 1 and (np.diff(s) >= 0).all()
     assert np.gradient(s, u).max() == pytest.approx(15 / 8, abs=1e-3)  # peak speed over mean speed
-    assert wearer._minimum_jerk(np.array([-3.0, 7.0])).tolist() == [0.0, 1.0]
+    assert hand.minimum_jerk(np.array([-3.0, 7.0])).tolist() == [0.0, 1.0]
 
 
 def test_ranges_and_speeds_are_those_of_a_real_glove(folder, takes, recordings):
@@ -257,6 +261,64 @@ def test_fingers_take_turns_as_a_real_hands_do(folder, takes, recordings):
             first, last = lags.mean(axis=0)[[3, 0]]
             assert 0.02 < sign * (last - first) < 0.16
         assert 0.4 < (ours / janken.FPS).std() / theirs.std() < 2.0
+
+
+@given(
+    st.lists(st.floats(-50, 50), min_size=1, max_size=30),
+    st.lists(st.floats(0.0, 5.0), min_size=1, max_size=3),
+)
+def test_play_holds_until_the_finger_has_crossed_it(values, plays):
+    x = np.outer(values, np.arange(1, len(plays) + 1))
+    found = played(x, np.array(plays))
+    for s, p in enumerate(plays):
+        y = x[0, s]
+        for t, value in enumerate(x[:, s]):
+            y = max(y, value - p / 2) if y < value else min(y, value + p / 2)
+            assert found[t, s] == pytest.approx(y, abs=1e-12)
+
+
+@given(st.lists(st.floats(-40, 120), min_size=22, max_size=22))
+def test_a_ring_finger_does_not_extend_alone(values):
+    angles = np.array(values)
+    found = hand.together(angles)
+    for middle, ring, little in ((7, 11, 15), (8, 12, 16)):
+        assert found[ring] >= (found[middle] + found[little]) / 2 - 35 - 1e-9
+        assert found[ring] >= angles[ring]
+    np.testing.assert_array_equal(np.delete(found, [11, 12]), np.delete(angles, [11, 12]))
+    pointed = np.where(FINGER == 3, POSES["p"], POSES["r"])  # a ring finger put up from a fist
+    assert hand.together(pointed)[11] > 30 and hand.together(pointed)[12] > 60
+
+
+def test_neighbours_drag_each_other():
+    way = np.zeros((1, 1, 22))
+    way[..., FINGER == 3] = 1.0  # the ring finger alone wants to move
+    found = hand._dragged(way, hand._DRAGGED, FINGER)[0, 0]
+    assert found[11] < 0.6 and found[15] > 0.3 and 0.1 < found[7] < found[15]
+    assert (found[FINGER < 2] == 0).all()
+    np.testing.assert_allclose(hand._dragged(np.ones((2, 3, 22)), hand._DRAGGED, FINGER), 1.0)
+
+
+def test_the_glove_is_a_little_off_its_calibration():
+    still = np.tile(POSES["s"], (600, 1))
+    off = []
+    for seed in range(8):
+        device = Device.drawn(seed)
+        counts = device.read(still, np.random.default_rng(seed))
+        degrees = (counts - [s.offset for s in SENSORS]) * [s.gain for s in SENSORS]
+        assert (counts[:, ~FITTED] == 127).all()
+        assert (counts[:, 7] <= 5).all()  # the knuckle's sensor is at its end when the finger is straight
+        off.append(degrees[-1] - still[-1])
+        assert np.abs(counts[-1] - counts[0]).max() >= 1  # it drifts
+    off = np.abs(np.array(off)[:, FITTED])
+    assert 0.5 < np.median(off) < 4 and off.max() < 30
+
+
+def test_bent_beside_straight_pulls_an_abduction():
+    for seed in range(4):
+        mix = Device.drawn(seed).crosstalk
+        bent = np.zeros(22)
+        bent[11] = 60.0
+        assert 8 < (mix @ bent)[14] < 20 and (mix @ bent)[10] == pytest.approx(0, abs=3)
 
 
 @pytest.mark.parametrize("small", [False, True])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import time
 from dataclasses import replace
 from itertools import pairwise
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
@@ -131,12 +133,52 @@ def test_skill_lessens_every_error():
         "drift",
     ):
         assert getattr(better, name) < getattr(worse, name)
-    assert better.patience > worse.patience
+    assert better.patience > worse.patience and better.arrange > worse.arrange
     assert better.tempo == worse.tempo and better.landmark == worse.landmark  # habits, not skill
 
 
 def test_pace_of_users_lies_between_half_and_double():
     assert all(0.5 <= u.habits.tempo <= 2 for u in users("one", "development", 100))
+
+
+ROOT = Path(__file__).parents[2]
+TUNING = [p for part in ("src", "tools", "workflow/scripts") for p in sorted((ROOT / part).rglob("*.py"))]
+PLAYS = "workflow/scripts/queries.py"  # where the config's experiments are played
+
+
+def drawn_splits(code: str) -> list[ast.expr | None]:
+    """The second argument, `split`, of every call of `users` in a program."""
+    found: list[ast.expr | None] = []
+    for node in ast.walk(ast.parse(code)):
+        name = getattr(node, "func", None)
+        if isinstance(node, ast.Call) and "users" in (getattr(name, "id", ""), getattr(name, "attr", "")):
+            named = [k.value for k in node.keywords if k.arg == "split"]
+            found.append(node.args[1] if len(node.args) > 1 else named[0] if named else None)
+    return found
+
+
+def test_test_users_appear_in_no_tuning_code():
+    """Whoever draws users elsewhere than where experiments are played draws development users, by name."""
+    drawn = {str(p.relative_to(ROOT)): drawn_splits(p.read_text(encoding="utf-8")) for p in TUNING}
+    assert drawn.pop(PLAYS), "the experiments draw no users: this test looks in the wrong place"
+    assert "workflow/scripts/puppeteers.py" in {p for p, splits in drawn.items() if splits}
+    for path, splits in drawn.items():
+        for split in splits:
+            assert isinstance(split, ast.Constant) and split.value == "development", path
+
+
+def test_the_look_for_test_users_sees_them():
+    for code in ('users("e", "test", 5)', "p.users('e', split='test', n=5)", "users('e', name, 5)"):
+        (split,) = drawn_splits(code)
+        assert not (isinstance(split, ast.Constant) and split.value == "development")
+    assert drawn_splits("users('e', 'development', 5)")[0].value == "development"
+
+
+def test_the_configs_experiments_have_five_test_users():
+    for path in sorted((ROOT / "config").glob("*.yaml")):
+        for experiment in yaml.safe_load(path.read_text(encoding="utf-8")).get("experiments", {}).values():
+            assert experiment.get("split", "test") == "test"
+            assert path.name == "test.yaml" or experiment.get("users", 5) == 5
 
 
 # the puppet's body -------------------------------------------------------------------------------------
@@ -175,6 +217,14 @@ def test_derivatives_of_a_turn_are_those_of_finite_differences(values):
         body._turn(q + step, v, more)
         body._turn(q - step, v, less)
         np.testing.assert_allclose(out[i + 1], (more[0] - less[0]) / 2e-6, atol=1e-8)
+
+
+@given(st.lists(st.floats(-2, 2), min_size=9, max_size=9), st.lists(st.floats(-3, 3), min_size=3, max_size=3))
+def test_three_equations_are_solved(values, right):
+    root = np.array(values).reshape(3, 3)
+    matrix, found = root @ root.T + 1e-3 * np.eye(3), np.array(right)
+    body._solve(matrix.copy(), found)
+    np.testing.assert_allclose(found, np.linalg.solve(matrix, right), rtol=1e-6, atol=1e-9)
 
 
 def test_hands_and_feet_reach_what_can_be_reached():
@@ -294,14 +344,53 @@ def test_phrases_cover_a_clip(n, k):
 def test_a_time_line_never_goes_back_but_for_limbs_that_had_to_wait(style):
     seen = imitation.watch(CLIP, 0.0)
     for k in range(5):
-        clock, held = plan.timeline(
-            seen.shown, seen.paths, player(style, 0.8, k).habits, np.random.default_rng(k)
-        )
+        h = replace(player(style, 0.8, k).habits, second_pass=0.0)
+        clock, held = plan.timeline(seen.shown, seen.paths, h, np.random.default_rng(k))
         assert (np.diff(clock[:, 4]) >= 0).all() and clock[-1, 4] == len(seen.paths) - 1
         assert held.sum(axis=1).max() <= 2
         assert not held[0].any() and not held[-1].any()
         pace = np.diff(clock[:, 4])
         assert 0.25 < pace[pace > 0].mean() < 2.5
+
+
+def test_limbs_that_waited_play_a_second_pass_with_the_trunk():
+    seen = imitation.watch(CLIP, 0.0)
+    h = replace(player("hand", 0.8).habits, second_pass=1.0, care=0.0)
+    clock, held = plan.timeline(seen.shown, seen.paths, h, np.random.default_rng(0))
+    trunk_clock, last = clock[:, 4], len(seen.paths) - 1
+    back = np.flatnonzero(np.diff(trunk_clock) < 0)
+    assert len(back) and trunk_clock[back[-1] + 1] == 0 and trunk_clock[-1] == last
+    assert not held[back + 1].any()  # nobody plays while the trunk goes back
+    second = held[back[-1] + 1 :].any(axis=0)
+    assert second.any() and held.sum(axis=1).max() <= 2
+    assert (clock[-1, :4][second] == last).all()
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_limbs_are_put_where_the_clip_begins_before_the_log_or_in_it(style):
+    a = np.zeros((240, 17))
+    a[:, [1, 4]] = 90.0  # both arms forward throughout, a leg kicks
+    a[:, 9] = 60 * np.sin(np.linspace(0, np.pi, 240))
+    clip = puppet.motion(a, 60.0)
+    for arrange in (0.0, 1.0):
+        user = player(style, 0.7)
+        user = replace(user, habits=replace(user.habits, arrange=arrange, placement_error=0.0, amplitude=0.0))
+        angles, _ = imitate(clip, user, seed_parts=("first",))
+        at_once = np.abs(angles[0, [1, 4]] - 90.0) < 45
+        assert at_once.all() == bool(arrange) and at_once.any() == bool(arrange)
+        middle = np.abs(angles[len(angles) // 2 :, [1, 4]] - 90.0)
+        assert (middle < 50).all()
+
+
+@given(st.floats(0.05, 1.0), st.floats(-0.3, 0.3), st.floats(0.0, 1.0))
+def test_the_error_of_a_straight_limbs_length_is_felt(there, error, share):
+    down = np.array([0.0, -1.0, 0.0])
+    meant = np.broadcast_to(body.REACH[:, None] * there * down, (1, 4, 3))
+    wanted = meant * (1 + error)
+    bend = 2 * np.arccos(min(there, 1.0))  # of a limb of two equal parts
+    counts = min(max(np.sin(bend / 2) / 0.5, share), 1.0)
+    expected = meant * (1 + counts * error)
+    np.testing.assert_allclose(imitation._felt(meant, wanted, share), expected, atol=1e-12)
 
 
 # the trunk ---------------------------------------------------------------------------------------------
@@ -513,10 +602,10 @@ def test_five_seconds_are_played_in_no_time():
     clip, best = performer(5.0), np.inf
     imitate(clip, DEVELOPMENT[0], seed_parts=())
     for k in range(3):
-        start = time.perf_counter()
+        start = time.process_time()
         imitate(clip, DEVELOPMENT[0], seed_parts=(k,))
-        best = min(best, time.perf_counter() - start)
-    assert best < 0.06
+        best = min(best, time.process_time() - start)
+    assert best < 0.08
 
 
 # real clips --------------------------------------------------------------------------------------------

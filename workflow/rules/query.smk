@@ -67,3 +67,28 @@ rule search:
         code=code("search.py"),
     script:
         "../scripts/search.py"
+
+
+rule puppeteers:
+    input:
+        index="results/{corpus}/index.h5",
+        motion=lambda wildcards: FLOW.of_shards(wildcards.corpus, "motion"),
+        targets=lambda wildcards: FLOW.targets(wildcards.corpus),
+        logs=lambda wildcards: list(FLOW.own_logs(wildcards.corpus).values()),
+    output:
+        "results/{corpus}/puppeteers.csv",
+    log:
+        "results/logs/puppeteers/{corpus}.log",
+    benchmark:
+        "results/benchmarks/puppeteers/{corpus}.tsv"
+    resources:
+        mem_mb=megabytes(1000, 10),
+        runtime=minutes(20, 0.1),
+    params:
+        compared=lambda wildcards: FLOW.to_compare(wildcards.corpus),
+        reduction=CONFIG.index.reduction,
+        settings=CONFIG.features.model_dump(),
+        seed=CONFIG.seed,
+        code=code("puppeteers.py"),
+    script:
+        "../scripts/puppeteers.py"

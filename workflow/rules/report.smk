@@ -3,7 +3,7 @@
 
 rule page:
     input:
-        tables=FLOW.tables(),
+        tables=FLOW.tables() + FLOW.comparisons(),
         figures=FLOW.figures(),
         films=FLOW.films(),
         searches=FLOW.searches(),

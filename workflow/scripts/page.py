@@ -37,7 +37,7 @@ def main(snakemake):
         )
     for path in given.tables:
         title, words = TABLES[Path(path).stem]
-        by = "label" if Path(path).stem == "label_counts" else "keyword"
+        by = {"label_counts": "label", "puppeteers": "query"}.get(Path(path).stem, "keyword")
         sections.append(Section(Path(path).stem, title, words, path, read_table(path, mean=by)))
     for path in given.searches:
         name, where = Path(path).stem, Path(path).parts[-3]

@@ -23,6 +23,12 @@ TABLES = {
         "Median over all queries, one core of the machine that made this page; the paper's machine is of 2008.",
     ),
     "table5": ("Table 5 of [P]: seconds per query, experiment 2", "As table 4, for the larger database."),
+    "puppeteers": (
+        "Two puppeteers: our simulated users beside logs of another origin",
+        "Where each measure ranks the clip that was imitated: by a puppet log that the project did not make (`rank`), "
+        "and by development users of ours who imitate the same clip (`rank_ours`: their mean; lowest and highest). "
+        "The means and medians are over all clips. What lies behind disagreements stands in docs/puppeteer.md.",
+    ),
     "label_counts": (
         "Table 2 of [H]: frames and intervals of each label",
         "What the label files hold, and how long the string of labels becomes by each way of counting: with an "

@@ -92,10 +92,10 @@ def alternation(take: str, *, small: bool = False) -> list[str]:
 
 
 def calibration() -> dict[str, dict[str, Any]]:
-    """The wearer's calibration: see `miburi.perform.janken.wearer.calibration`."""
-    from miburi.perform.janken import wearer
+    """The wearer's calibration: see `miburi.perform.janken.sensors.calibration`."""
+    from miburi.perform.janken import sensors
 
-    return wearer.calibration()
+    return sensors.calibration()
 
 
 def perform(seed: int, *, small: bool = False) -> dict[str, tuple[NDArray[np.int64], list[Interval]]]:

@@ -107,6 +107,22 @@ def _tip(bend, upper, lower, leg):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def _solve(a, b):  # type: ignore[no-untyped-def]
+    """b becomes the solution of a x = b for a symmetric positive definite 3 × 3 matrix (Cholesky)."""
+    l00 = np.sqrt(a[0, 0])
+    l10, l20 = a[1, 0] / l00, a[2, 0] / l00
+    l11 = np.sqrt(a[1, 1] - l10 * l10)
+    l21 = (a[2, 1] - l20 * l10) / l11
+    l22 = np.sqrt(a[2, 2] - l20 * l20 - l21 * l21)
+    y0 = b[0] / l00
+    y1 = (b[1] - l10 * y0) / l11
+    y2 = (b[2] - l20 * y0 - l21 * y1) / l22
+    b[2] = y2 / l22
+    b[1] = (y1 - l21 * b[2]) / l11
+    b[0] = (y0 - l10 * b[1] - l20 * b[2]) / l00
+
+
+@njit(cache=True)
 def _step(q, hand, elbow, weight, v, upper, ranges):  # type: ignore[no-untyped-def]
     """One damped least-squares step of (z, x, y) towards the wanted places; returns the largest change."""
     a, b = np.empty((4, 3)), np.empty((4, 3))
@@ -122,10 +138,10 @@ def _step(q, hand, elbow, weight, v, upper, ranges):  # type: ignore[no-untyped-
         if (q[i] <= ranges[i, 0] and right[i] <= 0) or (q[i] >= ranges[i, 1] and right[i] >= 0):
             normal[i, :], normal[:, i], right[i] = 0.0, 0.0, 0.0
         normal[i, i] += _DAMPING
-    change = np.linalg.solve(normal, right)
+    _solve(normal, right)
     largest = 0.0
     for i in range(3):
-        new = min(max(q[i] + min(max(change[i], -0.4), 0.4), ranges[i, 0]), ranges[i, 1])
+        new = min(max(q[i] + min(max(right[i], -0.4), 0.4), ranges[i, 0]), ranges[i, 1])
         largest = max(largest, abs(new - q[i]))
         q[i] = new
     return largest

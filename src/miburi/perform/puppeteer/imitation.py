@@ -107,7 +107,21 @@ def misjudge(seen: Seen, user: User, rng: np.random.Generator) -> Floats:
     smooth = gaussian_filter1d(paths, h.blur_s * FPS, axis=0, mode="nearest") if h.blur_s else paths
     centre = smooth.mean(axis=0)
     swing = np.einsum("lab,tlb->tla", Rotation.from_rotvec(turned).as_matrix(), smooth - centre)
-    return _within(centre + size[:, None] * swing + shift)
+    return _within(_felt(smooth, centre + size[:, None] * swing + shift, h.straight))
+
+
+def _felt(meant: Floats, wanted: Floats, share: float) -> Floats:
+    """Errors of the distance from the root lessened where a limb is meant to be straight.
+
+    Near its stop a limb bends by 2 arccos(r) for a distance of r reaches: a foot that is a tenth too near would
+    bend a straight leg by 50°, and whoever pulls a leg straight feels that it is.
+    """
+    there = np.linalg.norm(meant, axis=-1)
+    here = np.maximum(np.linalg.norm(wanted, axis=-1), 1e-9)
+    half_bend = np.sqrt(np.maximum(1 - (there / body.REACH) ** 2, 0.0))
+    counts = np.clip(half_bend / 0.5, share, 1.0)
+    felt: Floats = wanted * ((there + counts * (here - there)) / here)[..., None]
+    return felt
 
 
 def _unsteady(n: int, user: User, rng: np.random.Generator) -> Floats:
@@ -139,31 +153,36 @@ def _knocks(held: NDArray[np.bool_], user: User, rng: np.random.Generator) -> Fl
     return out
 
 
-def _arrange(paths: Floats, elbows: Floats, user: User, rng: np.random.Generator) -> Floats:
-    """Angles (4, 4), radians, of the limbs before the log begins.
+def _arrange(
+    paths: Floats, elbows: Floats, user: User, rng: np.random.Generator
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Angles (4, 4), radians, of the limbs when the log begins, and which limbs are still to be put where the
+    clip begins, (4,).
 
-    Friction holds a pose, so users put the limbs into the clip's first pose and then record. A limb that
-    hangs about right, or that they think unimportant and is not far off, is left as it hangs.
+    Friction holds a pose, so users put the limbs into the clip's first pose and then record, or record and then
+    put them. A limb that hangs about right is left as it hangs.
     """
     h = user.habits
     ranges = np.radians(body.RANGES)
     hanging: Floats = np.clip(np.radians(h.mess) * rng.normal(size=(4, 4)), ranges[..., 0], ranges[..., 1])
+    rest = -body.REACH[:, None] * np.array([0.0, 1.0, 0.0])
+    off: NDArray[np.bool_] = np.linalg.norm(paths[0] - rest, axis=-1) > h.care * body.REACH
+    if rng.random() >= h.arrange:
+        return hanging, off
     out: Floats = hanging.copy()
-    for k in range(4):
-        rest = np.array([0.0, -body.REACH[k], 0.0])
+    for k in np.flatnonzero(off):
         mirror = np.array([body.SIDE[k], 1.0, 1.0])
-        if np.linalg.norm(paths[0, k] - rest) > h.care * body.REACH[k]:
-            out[k] = body.settle(
-                hanging[k],
-                paths[0, k] * mirror,
-                elbows[0, k] * mirror,
-                h.elbow,
-                body.UPPER[k],
-                body.LOWER[k],
-                k > 1,
-                ranges[k],
-            )
-    return out
+        out[k] = body.settle(
+            hanging[k],
+            paths[0, k] * mirror,
+            elbows[0, k] * mirror,
+            h.elbow,
+            body.UPPER[k],
+            body.LOWER[k],
+            k > 1,
+            ranges[k],
+        )
+    return out, np.zeros(4, dtype=bool)
 
 
 def imitate(target: Motion, user: User, *, seed_parts: tuple[object, ...]) -> tuple[Floats, float]:
@@ -196,8 +215,8 @@ def imitate(target: Motion, user: User, *, seed_parts: tuple[object, ...]) -> tu
     rng = seed("imitate", user.name, *seed_parts)
     seen = watch(target, h.landmark)
     paths = misjudge(seen, user, rng)
-    clock, held = plan.timeline(seen.shown, paths, h, rng)
-    start = _arrange(paths, seen.elbows, user, rng)
+    start, off = _arrange(paths, seen.elbows, user, rng)
+    clock, held = plan.timeline(seen.shown, paths, h, rng, off)
     n = len(clock)
     wanted = np.stack([_at(paths[:, k], clock[:, k]) for k in range(4)], axis=1)
     wanted = _within(wanted + _unsteady(n, user, rng) + _knocks(held, user, rng))

@@ -123,7 +123,11 @@ def _samples(seconds: float) -> int:
 
 
 def timeline(
-    shown: Floats, paths: Floats, habits: Habits, rng: np.random.Generator
+    shown: Floats,
+    paths: Floats,
+    habits: Habits,
+    rng: np.random.Generator,
+    off: NDArray[np.bool_] | None = None,
 ) -> tuple[Floats, NDArray[np.bool_]]:
     """Plan how a clip is played.
 
@@ -133,6 +137,8 @@ def timeline(
         What the clip shows of hands and feet, lengths of a leg: decides which limbs matter and when.
     paths : (T, 4, 3)
         Where the user means to bring hands and feet from shoulders and hips, metres on the puppet.
+    off : (4,), optional
+        Limbs that are to be put where the clip begins.
 
     Returns
     -------
@@ -144,14 +150,16 @@ def timeline(
     meant = important(shown, habits.ignore)
     plan = Plan()
     pieces = phrases(shown[:, meant]) if meant.any() else [(0, len(paths) - 1)]
-    held: list[int] = []
     plan.add(_samples(habits.reach_in_s * rng.uniform(0.3, 0.6)), [])  # the hands come near
+    held = _put(plan, paths, off, habits, rng) if off is not None else []
+    again = rng.random() < habits.second_pass
+    played = np.zeros(4)
     for number, (a, b) in enumerate(pieces):
         travel = meant * np.linalg.norm(shown[a : b + 1] - shown[a], axis=-1).max(axis=0)
         worth = np.where(travel > _STILL, travel, 0.0)
         worth[held] *= _KEPT
         led = lead(paths[a : b + 1] + ROOTS, worth, habits) or held
-        if number == 0:
+        if number == 0 and not held:
             plan.add(_samples(habits.reach_in_s * rng.uniform(0.3, 0.5)), led)  # … and take hold
         elif led != held:
             plan.add(_samples(habits.regrip_s * rng.uniform(0.7, 1.3)), [])
@@ -160,10 +168,52 @@ def timeline(
         pace = float(np.clip(habits.tempo * np.exp(habits.tempo_error * rng.normal()), 0.5, 2.0))
         n = max(round((b - a) / pace), 1)
         plan.add(n, led, _uneven(a, b, n, habits.tempo_error, rng), trunk=True)
-        held = _afterwards(plan, led, meant, paths, (a, b), habits, rng)
+        held = led if again else _afterwards(plan, led, meant, paths, (a, b), habits, rng)
+        played[led] += 1
+    if again:
+        held = _once_more(plan, held, meant & (played < 0.5 * len(pieces)), paths, habits, rng)
     plan.add(_samples(0.25 * min(habits.reach_in_s, 1.0)), held)  # the fingers open
     plan.add(_samples(habits.reach_in_s * rng.uniform(0.3, 0.6)), [])
     return np.concatenate(plan.clock), np.concatenate(plan.held)
+
+
+def _put(
+    plan: Plan, paths: Floats, off: NDArray[np.bool_], habits: Habits, rng: np.random.Generator
+) -> list[int]:
+    """Put the limbs where the clip begins, as many at a time as the hands can hold; returns who is held then."""
+    rest = -REACH[:, None] * np.array([0.0, 1.0, 0.0])
+    value = np.where(off, np.linalg.norm(paths[0] - rest, axis=-1), 0.0)
+    held: list[int] = []
+    while value.any():
+        if held:
+            plan.add(_samples(habits.regrip_s * rng.uniform(0.7, 1.3)), [])
+        held = lead(paths[:1] + ROOTS, value, habits)
+        plan.add(_samples(JOIN_S * rng.uniform(1.0, 1.6)), held)
+        value[held] = 0.0
+    return held
+
+
+def _once_more(
+    plan: Plan,
+    held: list[int],
+    waiting: NDArray[np.bool_],
+    paths: Floats,
+    habits: Habits,
+    rng: np.random.Generator,
+) -> list[int]:
+    """The whole clip a second time with the limbs that waited through most of it; returns who is held at the end."""
+    last = len(paths) - 1
+    travel = np.linalg.norm(paths - paths[:1], axis=-1).max(axis=0) / REACH
+    value = np.where(waiting & (travel > habits.care), travel, 0.0)
+    if not value.any() or last == 0:
+        return held
+    led = lead(paths + ROOTS, value, habits)
+    n = _samples(habits.regrip_s * rng.uniform(1.4, 2.6))
+    plan.add(n, [], np.linspace(last, 0, n), trunk=True)
+    plan.at[led] = 0.0
+    n = max(round(last / float(np.clip(habits.tempo, 0.5, 2.0))), 1)
+    plan.add(n, led, _uneven(0, last, n, habits.tempo_error, rng), trunk=True)
+    return led
 
 
 def _afterwards(

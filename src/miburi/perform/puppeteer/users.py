@@ -27,7 +27,7 @@ clip's."""
 
 @dataclass(frozen=True)
 class Habits:
-    """How a user plays. All zero but for `grips`, `limbs` and the trunk's gain and limit is a perfect user.
+    """How a user plays. Most of it zero is a perfect user (`perfect`).
 
     Lengths are metres on a puppet of 0.33 m, angles are degrees.
     """
@@ -40,6 +40,9 @@ class Habits:
     """Most limbs that move at once."""
     patience: float
     """Chance that a limb that had to wait is moved afterwards, not left."""
+    second_pass: float
+    """Chance that limbs that had to wait are not moved after each phrase but play the whole clip in a second
+    pass, with the trunk brought back to the beginning."""
     ignore: float
     """A limb that moves less than this share of what the busiest limb does is judged unimportant and left
     still."""
@@ -64,6 +67,9 @@ class Habits:
     """Degrees by which a path is turned."""
     placement_error: float
     """Shares of the reach by which a path is shifted."""
+    straight: float
+    """A limb's stop is felt: an error of the distance from shoulder or hip counts in full where the limb is bent
+    by 60° or more, and by this share where it is straight."""
     complexity: float
     """By how much these three errors grow with each important limb beyond two."""
     blur_s: float
@@ -82,6 +88,8 @@ class Habits:
     """Chance of a pause between two phrases."""
     pause_s: float
     """Longest pause."""
+    arrange: float
+    """Chance that the limbs are put into the clip's first pose before the log begins, not in it."""
     reach_in_s: float
     """Seconds until the hands are on the limbs, and as many after they let go."""
     knock: float
@@ -110,7 +118,14 @@ def perfect() -> Habits:
     """Habits of a user who errs in nothing and has a hand for every limb: a yardstick, never a query's
     user."""
     zeros = dict.fromkeys(set(Habits.__dataclass_fields__) - {"grips", "limbs"}, 0.0)
-    whole = {"elbow": 0.3, "tempo": 1.0, "trunk_gain": 1.0, "trunk_limit": 180.0}
+    whole = {
+        "elbow": 0.3,
+        "tempo": 1.0,
+        "straight": 1.0,
+        "arrange": 1.0,
+        "trunk_gain": 1.0,
+        "trunk_limit": 180.0,
+    }
     return Habits(grips=4, limbs=4, **(zeros | whole))
 
 
@@ -141,6 +156,7 @@ _BY_SKILL = {
     "wander": (0.008, 0.003),
     "tremor": (0.0012, 0.0006),
     "tempo_error": (0.3, 0.12),
+    "arrange": (0.4, 0.9),
     "pause": (0.5, 0.15),
     "pause_s": (0.9, 0.4),
     "reach_in_s": (0.9, 0.5),
@@ -150,6 +166,8 @@ _BY_SKILL = {
 _COMPLEXITY = 0.2
 _STICK = 2.5
 _LANDMARK = 0.6
+_SECOND_PASS = 0.4
+_STRAIGHT = 0.25
 _AMPLITUDE = 0.15
 
 
@@ -185,7 +203,7 @@ def habits(style: str, skill: float, rng: np.random.Generator) -> Habits:
     skill.
     """
     gain = _TRUNK_GAIN[style]
-    u = rng.random(3)
+    u = rng.random(4)
     bias = float(np.clip(rng.normal(), -2.0, 2.0))
     settings = {k: a + (b - a) * skill for k, (a, b) in _BY_SKILL.items()} | _HOLDING[style]
     if style == "strapped":
@@ -198,6 +216,8 @@ def habits(style: str, skill: float, rng: np.random.Generator) -> Habits:
         limbs=2,
         landmark=_LANDMARK * float(u[0]),
         amplitude=_AMPLITUDE * bias,
+        second_pass=_SECOND_PASS * float(u[3]),
+        straight=_STRAIGHT,
         complexity=_COMPLEXITY,
         tempo=float(TEMPO[0] * (TEMPO[1] / TEMPO[0]) ** u[1]),
         trunk_gain=float(gain[0] + (gain[1] - gain[0]) * u[2]),
