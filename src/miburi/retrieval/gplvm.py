@@ -30,7 +30,9 @@ NOISE = (1e-6, 1e2)
 _FIRST_NOISE = 0.05
 # Longest step of a latent point in one iteration, in length scales: further away gradients say nothing.
 _LONGEST = 1.0
-_ENOUGH = 1e-4
+_ENOUGH = 1e-2
+# Rounding may take a predictive variance below the noise; it counts as at least this share of it.
+_LEAST = 0.5
 # Points beside the latent points from which projecting may set out; the box reaches a length scale beyond them.
 _SPREAD = 64
 
@@ -170,7 +172,7 @@ def model(x: ArrayLike, latent: Floats, scale: Floats) -> Model:
         weights,
         starts,
         k @ weights,
-        signal + noise - np.einsum("ij,ij->i", k @ inverse, k),
+        np.maximum(signal + noise - np.einsum("ij,ij->i", k @ inverse, k), _LEAST * noise),
     )
 
 
@@ -253,7 +255,7 @@ def _value(x, latent, scale, inverse, along, square, width, k, both, gradient): 
     for i in range(n):
         variance -= k[i] * both[i]
         error += k[i] * (both[n + i] - 2.0 * along[i])
-    variance = max(variance, 1e-3 * scale[1])
+    variance = max(variance, _LEAST * scale[1])
     error = max(error, 0.0)
     # d value = by_variance d variance + by_error d error
     by_error = 0.5 / variance

@@ -75,7 +75,7 @@ class Index:
     seed
         Seed of the draw.
     models
-        GP-LVMs of the segments (`trained`, `with_models`); None: trained by the defaults when first asked for.
+        GP-LVMs of the segments (`trained`); None: trained by the defaults when first asked for.
     """
 
     take: tuple[str, ...]
@@ -184,10 +184,6 @@ class Index:
     def trained(self, settings: latent.Settings) -> Index:
         """This index with the GP-LVM of each segment, trained by these settings."""
         return replace(self, models=latent.train(self.frames, self.offsets, settings))
-
-    def with_models(self, path: str | os.PathLike[str]) -> Index:
-        """This index with the GP-LVMs that `models.save` wrote; InputError if they are of another index."""
-        return replace(self, models=latent.open_models(path, self.frames, self.offsets))
 
     def rank(
         self, x: ArrayLike, measure: str = "DSPM(PCA)", k: int | None = None, *, reduction: str = "max"
@@ -344,13 +340,14 @@ class Index:
             file.attrs["seed"] = self.seed
 
     @classmethod
-    def open(cls, path: str | os.PathLike[str]) -> Index:
-        """Read an index that `save` wrote.
+    def open(cls, path: str | os.PathLike[str], models: str | os.PathLike[str] | None = None) -> Index:
+        """Read an index that `save` wrote, and the GP-LVMs of its segments that `models.save` wrote.
 
         Raises
         ------
         InputError
-            The file is missing, damaged or not an index, or its arrays do not fit together.
+            A file is missing, damaged or of another format, its arrays do not fit together, or the models
+            are of another index.
         """
         with store.open_checked(path, "index") as file:
             try:
@@ -375,7 +372,7 @@ class Index:
                     raise InputError(
                         f"{path}: /offsets do not cut the {len(frames)} frames into {s} segments"
                     )
-            return cls(
+            index = cls(
                 tuple(take),
                 store.get(file, "start", (s,)),
                 store.get(file, "end", (s,)),
@@ -387,3 +384,6 @@ class Index:
                 samples or None,
                 seed,
             )
+        if models is None:
+            return index
+        return replace(index, models=latent.open_models(models, index.frames, index.offsets))
