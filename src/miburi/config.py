@@ -153,6 +153,17 @@ class Index(Model):
     reduction: Literal["max", "mean"] = Field("max", description="How SM reduces over the query's frames.")
 
 
+class Gplvm(Model):
+    """GP-LVMs of segments and queries, for the measures SM(GP-LVM) and DSPM(GP-LVM)."""
+
+    dims: int = Field(2, ge=1, le=10, description="Latent dimensions.")
+    frames: int = Field(
+        25, ge=2, description="Each model is trained on so many of the drawn frames, evenly spaced."
+    )
+    iterations: int = Field(100, ge=1, description="Iterations of training (L-BFGS) at most.")
+    starts: int = Field(2, ge=1, description="Starts from which a new frame's latent point is sought.")
+
+
 class Train(Model):
     """The labels' HMMs ([H])."""
 
@@ -256,6 +267,7 @@ class Config(Model):
     segment: Segmentation = Field(default_factory=Segmentation, description="Segmentation.")
     features: Features = Field(default_factory=Features, description="Features of bodies.")
     index: Index = Field(default_factory=Index, description="Index.")
+    gplvm: Gplvm = Field(default_factory=Gplvm, description="Latent variable models.")
     train: Train = Field(default_factory=Train, description="Training.")
     strings: dict[Name, String] = Field({}, description="Strings of labels to synthesise.")
     films: dict[Name, Film] = Field({}, description="Films of body takes that `all` makes.")

@@ -184,6 +184,10 @@ class Flow:
         folder = self.experiment_folder(experiment)
         return [f"{folder}/ranks/{experiment}/{m}.h5" for m in self.config.experiments[experiment].measures]
 
+    def models(self, corpus: str, measure: str) -> list[str]:
+        """GP-LVMs of a corpus, where a measure needs them."""
+        return [f"results/{corpus}/gplvm.h5"] if "GP-LVM" in measure else []
+
     def scores(self) -> list[str]:
         """Scores of all experiments."""
         return [self.scores_of(e) for e in self.config.experiments]

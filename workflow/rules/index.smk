@@ -1,4 +1,4 @@
-# One index of all segments of a corpus.
+# One index of all segments of a corpus; the GP-LVMs of its segments only where a measure asks for them.
 
 
 rule index:
@@ -20,3 +20,22 @@ rule index:
         code=code("index.py"),
     script:
         "../scripts/index.py"
+
+
+rule gplvm:
+    input:
+        "results/{corpus}/index.h5",
+    output:
+        "results/{corpus}/gplvm.h5",
+    log:
+        "results/logs/gplvm/{corpus}.log",
+    benchmark:
+        "results/benchmarks/gplvm/{corpus}.tsv"
+    resources:
+        mem_mb=megabytes(800, 20),
+        runtime=minutes(5, 1),
+    params:
+        settings=CONFIG.gplvm.model_dump(),
+        code=code("gplvm.py"),
+    script:
+        "../scripts/gplvm.py"

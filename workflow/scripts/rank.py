@@ -13,7 +13,7 @@ from miburi.retrieval.ranking import ranking
 
 
 def main(snakemake):
-    index = Index.open(snakemake.input.index)
+    index = Index.open(snakemake.input.index, *snakemake.input.models)
     segments = list(zip(index.take, index.start.tolist(), index.end.tolist(), strict=True))
     with open(snakemake.input.takes, encoding="utf-8", newline="") as file:
         subjects = {row["take"]: row["subject"] for row in csv.DictReader(file)}

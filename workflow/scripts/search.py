@@ -9,7 +9,7 @@ from miburi.retrieval.index import Index
 
 
 def main(snakemake):
-    index = Index.open(snakemake.input.index)
+    index = Index.open(snakemake.input.index, *snakemake.input.models)
     with open(snakemake.input.takes, encoding="utf-8", newline="") as file:
         fps = {row["take"]: float(row["fps"]) for row in csv.DictReader(file)}
     p, log = snakemake.params, snakemake.input.log

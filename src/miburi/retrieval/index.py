@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -14,13 +14,14 @@ from numpy.typing import ArrayLike, NDArray
 from miburi import store
 from miburi.errors import InputError
 from miburi.motion import Floats
-from miburi.retrieval import nearest, subspace
+from miburi.retrieval import latent, nearest, subspace
 from miburi.retrieval.dtw import dtw
 from miburi.retrieval.jvh import bhattacharyya, jvh
 from miburi.retrieval.ranking import Ranking, ranking
 
 _PLAIN = ("mean pose", "SM(PCA)", "MSM", "DSPM(PCA)")
-_MEASURES = ("DTW", *_PLAIN, *(f"{name}+Jvh" for name in _PLAIN[1:]))
+_LATENT = ("SM(GP-LVM)", "DSPM(GP-LVM)")
+_MEASURES = ("DTW", *_PLAIN, *_LATENT, *(f"{name}+Jvh" for name in _PLAIN[1:]))
 
 
 def measures() -> tuple[str, ...]:
@@ -73,6 +74,8 @@ class Index:
         Frames drawn from each side (K); None: all.
     seed
         Seed of the draw.
+    models
+        GP-LVMs of the segments (`trained`); None: trained by the defaults when first asked for.
     """
 
     take: tuple[str, ...]
@@ -85,6 +88,11 @@ class Index:
     offsets: NDArray[np.int64]
     samples: int | None
     seed: int
+    models: latent.Models | None = None
+
+    @cached_property
+    def _models(self) -> latent.Models:
+        return self.models or latent.train(self.frames, self.offsets, latent.Settings())
 
     @cached_property
     def _blocks(self) -> Floats:
@@ -173,6 +181,10 @@ class Index:
         """Dimensions of the subspaces."""
         return int(self.basis.shape[1])
 
+    def trained(self, settings: latent.Settings) -> Index:
+        """This index with the GP-LVM of each segment, trained by these settings."""
+        return replace(self, models=latent.train(self.frames, self.offsets, settings))
+
     def rank(
         self, x: ArrayLike, measure: str = "DSPM(PCA)", k: int | None = None, *, reduction: str = "max"
     ) -> Ranking:
@@ -224,6 +236,9 @@ class Index:
             (`samples=None`).
         mean pose
             Distance of the two means, metres. A naive measure, to compare with.
+        SM(GP-LVM), DSPM(GP-LVM)
+            The same with GP-LVMs in the place of subspaces: Err is the distance of a frame from its projection
+            to the latent space and back (`gplvm.project`).
         …+Jvh
             The distance times the Hellinger distance √(1 − B) of the histograms of movement, B their
             Bhattacharyya coefficient (eqs. 3, 4). [P] does not print its rule; this one was the best of seven
@@ -240,6 +255,8 @@ class Index:
             distance = dtw(self._drawn(query), self._blocks, self.offsets)
         elif plain == "mean pose":
             distance = np.sqrt(np.square(self.mean - query.mean(axis=0)).sum(axis=1))
+        elif plain in _LATENT:
+            distance = self._latent_distances(query, plain, reduction == "mean")
         else:
             distance = self._subspace_distances(query, plain, reduction == "mean")
         if measure.endswith("+Jvh"):
@@ -296,6 +313,13 @@ class Index:
         back: Floats = subspace.samples_to_subspace(self._blocks, self.offsets, mean, basis)
         return np.maximum(to, back)
 
+    def _latent_distances(self, query: Floats, measure: str, mean_not_max: bool) -> Floats:
+        drawn = self._drawn(query)
+        errors = self._models.errors(drawn)
+        if measure == "SM(GP-LVM)":
+            return errors.mean(axis=1) if mean_not_max else errors.max(axis=1)
+        return np.maximum(errors.max(axis=1), self._models.errors_back(drawn))
+
     def save(self, path: str | os.PathLike[str], sources: Mapping[str, str] | None = None) -> None:
         """Write the index ("miburi/index"), with the digests of what it was made from.
 
@@ -316,13 +340,14 @@ class Index:
             file.attrs["seed"] = self.seed
 
     @classmethod
-    def open(cls, path: str | os.PathLike[str]) -> Index:
-        """Read an index that `save` wrote.
+    def open(cls, path: str | os.PathLike[str], models: str | os.PathLike[str] | None = None) -> Index:
+        """Read an index that `save` wrote, and the GP-LVMs of its segments that `models.save` wrote.
 
         Raises
         ------
         InputError
-            The file is missing, damaged or not an index, or its arrays do not fit together.
+            A file is missing, damaged or of another format, its arrays do not fit together, or the models
+            are of another index.
         """
         with store.open_checked(path, "index") as file:
             try:
@@ -347,7 +372,7 @@ class Index:
                     raise InputError(
                         f"{path}: /offsets do not cut the {len(frames)} frames into {s} segments"
                     )
-            return cls(
+            index = cls(
                 tuple(take),
                 store.get(file, "start", (s,)),
                 store.get(file, "end", (s,)),
@@ -359,3 +384,6 @@ class Index:
                 samples or None,
                 seed,
             )
+        if models is None:
+            return index
+        return replace(index, models=latent.open_models(models, index.frames, index.offsets))
