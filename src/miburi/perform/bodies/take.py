@@ -12,8 +12,8 @@ from miburi import formats, store
 from miburi.errors import InputError
 from miburi.formats.annotations import Annotation, write_annotations
 from miburi.motion import Motion
-from miburi.perform.bodies import actions, extras, gestures, steps
-from miburi.perform.bodies.body import FPS, embody
+from miburi.perform.bodies import acrobatics, actions, dances, extras, floor, gestures, steps, strokes
+from miburi.perform.bodies.body import embody
 from miburi.perform.bodies.people import person
 from miburi.perform.bodies.programme import KEYWORDS, REPETITIONS, Clip, Plan, plan
 from miburi.perform.bodies.score import Score
@@ -53,6 +53,16 @@ def _chin(b: Score, times: int) -> Done:
     return _seated(b, keyword, lambda: actions.chin_seated(b), b.vary(0.27, 0.01), "knee")
 
 
+def _rug(b: Score, times: int) -> Done:
+    fall = ("rug pull fall", *floor.rug_pull(b))
+    return [fall, ("get up", *floor.get_up(b))]
+
+
+def _lie(b: Score, times: int) -> Done:
+    lie = ("lie down", *floor.lie_down(b))
+    return [lie, ("get up", *floor.get_up(b))]
+
+
 MOTIONS: Mapping[str, Callable[[Score, int], Done]] = {
     "right punch": _single("right punch", gestures.punch),
     "squats": _single("squats", actions.squats),
@@ -65,6 +75,21 @@ MOTIONS: Mapping[str, Callable[[Score, int], Done]] = {
     "sit and swing legs": _swing,
     "hand on chin": _chin,
     "drink soda": _single("drink soda", gestures.drink),
+    "hand stand kicks": _single("hand stand kicks", acrobatics.hand_stand_kicks),
+    "backflip": _single("backflip", lambda b, n: acrobatics.backflip(b)),
+    "cartwheel": _single("cartwheel", lambda b, n: acrobatics.cartwheel(b)),
+    "spins": _single("spins", dances.spins),
+    "handstands": _single("handstands", lambda b, n: acrobatics.handstand(b)),
+    "somersault": _single("somersault", lambda b, n: floor.somersault(b)),
+    "jump kick": _single("jump kick", lambda b, n: acrobatics.jump_kick(b)),
+    "front hand flip": _single("front hand flip", lambda b, n: acrobatics.hand_flip(b)),
+    "rug pull fall": _rug,
+    "Russian dance": _single("Russian dance", dances.russian),
+    "breast stroke": _single("breast stroke", strokes.breast),
+    "free style": _single("free style", lambda b, n: strokes.crawl(b, n, False)),
+    "back stroke": _single("back stroke", lambda b, n: strokes.crawl(b, n, True)),
+    "fly style": _single("fly style", strokes.fly),
+    "lie down": _lie,
     "walk": _single("walk", actions.walk),
     "wave": _single("wave", gestures.wave),
     "throw": _single("throw", lambda b, n: gestures.throw(b)),
@@ -131,7 +156,7 @@ def perform(entry: Plan, seed: int) -> tuple[Motion, list[Annotation]]:
     b, done = compose(entry, seed)
     motion = embody(b, store.seed(seed, "everyday", entry.take, "unrest"), entry.take)
     more = {"performer": entry.performer, "recording": "simulated"}
-    last = (len(motion) - 1) / FPS
+    last = (len(motion) - 1) / motion.fps
     rows = [
         Annotation(entry.take, round(start, 3), round(min(end, last), 3), keyword, more)
         for keyword, start, end in done
@@ -159,7 +184,7 @@ def imagine(keyword: str, performer_seed: int | str) -> Motion:
     b, done = compose(entry, 0)
     motion = embody(b, store.seed(performer_seed, "imagine", keyword, "unrest"), entry.take)
     start, end = next((s, e) for k, s, e in done if k == keyword)
-    return motion[int(np.floor(start * FPS)) : int(np.ceil(end * FPS)) + 1]
+    return motion[int(np.floor(start * motion.fps)) : int(np.ceil(end * motion.fps)) + 1]
 
 
 def write(
