@@ -12,8 +12,9 @@ from miburi.perform.bodies.gestures import Span
 from miburi.perform.bodies.score import SIDES, Score, Vector
 from miburi.perform.bodies.steps import home, stand, walk
 
-WRIST = 0.055  # height of the wrist of a hand that is flat on the floor, metres for a height of 1.75 m
+WRIST = 0.035  # height of the wrist of a hand that is flat on the floor, metres for a height of 1.75 m
 _OPEN = 1e9
+_LOOSENED = 0.13  # seconds in which a foot goes from the ground's to its shank's direction
 
 
 # --- limbs ----------------------------------------------------------------------------------------------
@@ -36,8 +37,12 @@ def leg(
 ) -> None:
     """Bring a foot that is in the air to a place of its hip's frame (outwards, up, ahead; metres for 1.75 m)."""
     b.move(f"{side}_foot", start, end, place, "hip", through=through)
-    loosen = f"{side}_ankle"
-    b.move(loosen, start, end, (1.0, flex), through=through and b.last(loosen).value[0] == 1.0)
+    ankle, loose = f"{side}_ankle", b.last(f"{side}_ankle").value
+    if loose[0] < 1.0:  # soon after the foot has left the ground, as long as shank and ground still agree on it
+        first = min(_LOOSENED, 0.7 * (end - start))
+        b.move(ankle, start, start + first, (1.0, 0.5 * (loose[1] + flex) if loose[1] else flex))
+        start += first
+    b.move(ankle, start, end, (1.0, flex))
 
 
 def legs(
@@ -53,10 +58,13 @@ def plant(
 ) -> None:
     """Put a foot on the ground: its ball at a place of the world, the sole at first a little on tiptoe."""
     b.move(f"{side}_foot", start, end, place)
-    b.move(f"{side}_ankle", start, end, (0.0, 0.0))
+    flex = b.last(f"{side}_ankle").value[1]
+    b.move(f"{side}_ankle", max(start, end - _LOOSENED), end, (0.0, flex))
     sole = f"{side}_sole"
-    middle = max(b.last(sole).t, start)
-    b.move(sole, middle, end, (yaw, tip))
+    if b.last(f"{side}_ankle").t > b.last(sole).t:  # unseen while the foot follows its shank
+        b.move(sole, start, start + 1e-4, (yaw, tip))
+    else:
+        b.move(sole, start, end, (yaw, tip))
     b.move(sole, end, end + 0.12, (yaw, 0.0))
     opened = b.air[side].pop()[0]
     b.air[side].append((opened, end))
@@ -72,20 +80,46 @@ def tiptoe(b: Score, start: float, end: float, pitch: float, sides: str = "lr") 
 def hands(
     b: Score, start: float, end: float, value: Vector, frame: str = "arm", *, sides: str = "lr"
 ) -> None:
-    """Both hands to mirrored places, together."""
+    """Both hands to mirrored places, together; round the shoulder rather than through it."""
     for side in sides:
-        b.reach(side, start, end, value, frame, arc=0.0, exact=True)
+        sweep(b, side, start, end, value, frame)
 
 
-def palms(b: Score, side: str, start: float, end: float, left: float, ahead: float) -> None:
-    """Put a hand flat on the floor, in the performer's own frame."""
+def sweep(b: Score, side: str, start: float, end: float, value: Vector, frame: str = "arm") -> None:
+    """A hand to a place, round the shoulder rather than through it."""
+    before = b.last(f"{side}_hand")
+    if frame == before.frame == "arm":
+        a, z = np.array(before.value), np.array(value)
+        far, near = float(np.linalg.norm(a)), float(np.linalg.norm(z))
+        if a @ z < 0.35 * far * near:
+            way = a / far + z / near + (0.0, 0.0, 0.8 * max(0.0, -(a @ z) / (far * near)))
+            middle = 0.5 * (far + near) * way / np.linalg.norm(way)
+            half = max(before.t, start) * 0.5 + 0.5 * end
+            b.move(f"{side}_hand", start, half, tuple(middle.tolist()), "arm", through=True, exact=True, even=True)
+            start = half
+    b.reach(side, start, end, value, frame, arc=0.0, exact=True)
+
+
+def palms(
+    b: Score, side: str, start: float, end: float, left: float, ahead: float, yaw: float = 0.0
+) -> None:
+    """Put a hand flat on the floor, in the performer's own frame; its fingers point to `yaw` degrees."""
     k = b.who.height / 1.75
     b.reach(side, start, end, (left, WRIST * k, ahead), "stage", arc=0.0, exact=True)
-    b.move(f"{side}_wrist", start, end, (-65.0, 0.0, 0.0), exact=True)
+    fingers = b.heading + yaw
+    palm = f"{side}_palm"
+    b.tracks[palm][-1] = b.last(palm)._replace(value=(b.last(palm).value[0], fingers))
+    b.move(palm, max(start, end - 0.25), end, (1.0, fingers))
+
+
+def unpalm(b: Score, start: float, seconds: float = 0.25) -> None:
+    """Hands leave the floor."""
+    for side in SIDES:
+        b.move(f"{side}_palm", start, start + seconds, (0.0, b.last(f"{side}_palm").value[1]))
 
 
 def on_hands(
-    b: Score, middle: Vector, turn: Vector, trunk: Vector = (0.0, 0.0, 0.0), far: float = 0.95, lean: float = 0.0
+    b: Score, middle: Vector, turn: Vector, trunk: Vector = (0.0, 0.0, 0.0), far: float = 0.95, upright: float = 0.0
 ) -> Vector:
     """Where the root is when straight arms carry: (left, up, ahead) in the performer's own frame, metres.
 
@@ -99,8 +133,8 @@ def on_hands(
         Pitch, roll, twist of the trunk.
     far
         Of an arm's length, from wrist to shoulder.
-    lean
-        Degrees by which the arms are tilted against the trunk about its left axis.
+    upright
+        From 0, arms in one line with the trunk, to 1, arms upright.
     """
     h = b.who.height
     hips = Rotation.from_euler("YXZ", turn, degrees=True)
@@ -109,8 +143,9 @@ def on_hands(
         place = place + frame.apply([0.0, step * h, 0.0])
         frame = frame * Rotation.from_euler("YXZ", [share * trunk[2], share * trunk[0], share * trunk[1]], True)
     shoulders = place + frame.apply([0.0, 0.098 * h, 0.0])
-    along = frame.apply([0.0, math.cos(math.radians(lean)), math.sin(math.radians(lean))])
-    root: Vector = tuple((np.array(middle) - far * b.who.arm * along - shoulders).tolist())
+    rise = (1 - upright) * frame.apply([0.0, -1.0, 0.0]) + [0.0, upright, 0.0]
+    rise /= np.linalg.norm(rise)
+    root: Vector = tuple((np.array(middle) + far * b.who.arm * rise - shoulders).tolist())
     return root
 
 
@@ -141,7 +176,11 @@ def crouch(b: Score, seconds: float, deep: float, back: float, *, arms: Vector =
 
 def land(b: Score, t: float, deep: float = 0.26, *, arms: Vector = (0.15, -0.35, 0.75)) -> None:
     """Give way after feet have come down at a time, and stand up."""
-    k, down, up = b.who.height / 1.75, b.beat(0.2), b.beat(0.55)
+    k, down, up = b.who.height / 1.75, b.vary(0.2, 0.01), b.beat(0.55)
+    last = b.last("pelvis")
+    if last.speed is not None:  # as deep as it takes to stop evenly
+        high = b.local(last.value)[1] - b.who.standing
+        deep = (0.47 * down * abs(last.speed[1]) - high) / k
     b.pelvis(t, t + down, 0.0, -deep * k, -0.12 * k)
     b.turn(t, t + down, 0.0, 110.0 * deep, 0.0)
     b.trunk(t, t + down, 60.0 * deep)
@@ -151,6 +190,12 @@ def land(b: Score, t: float, deep: float = 0.26, *, arms: Vector = (0.15, -0.35,
     b.rise(t, t + up)
     b.relax(t + 0.1, t + 1.3 * up)
     b.now = t + up
+
+
+def still(b: Score) -> None:
+    """Wait until pelvis and feet have come to rest, so that all limbs begin together."""
+    tracks = ("pelvis", "turn", "l_foot", "r_foot", "l_sole", "r_sole")
+    b.now = max(b.now, *(b.last(track).t for track in tracks))
 
 
 def under(b: Score, ahead: float) -> None:
@@ -165,6 +210,7 @@ def backflip(b: Score) -> Span:
     """Backwards through the air, tucked or piked, from both feet to both feet."""
     k, who = b.who.height / 1.75, b.who
     stand(b, b.stance("l"), b.stance("r"))
+    still(b)
     t = b.now
     start = t
     ready = b.beat(0.55)
@@ -174,9 +220,9 @@ def backflip(b: Score) -> Span:
     b.now = t + ready
     tiptoe(b, b.now, b.now + 0.25, 0.0)
     crouch(b, b.beat(0.42), b.vary(0.30, 0.03), 0.16)
-    t, push = b.now, b.beat(0.24, 0.05)
+    t, push = b.now, b.vary(0.26, 0.01)
     up = t + push
-    root(b, t, up, on_foot(b, -7.0, 0.075 * k, -0.03 * k), even=False)
+    root(b, t, up, on_foot(b, -7.0, 0.04 * k, 0.0), even=False)
     b.turn(t, up, 0.0, -12.0, 0.0)
     b.trunk(t, up, -14.0)
     b.look(t, up, -16.0)
@@ -192,9 +238,9 @@ def backflip(b: Score) -> Span:
     pike = b.way("tuck", "tuck", "tuck", "pike") == "pike"
     tuck = (0.02, -0.32, 0.55) if pike else (0.05, -0.34, 0.36)
     leg_ = (0.02, -0.84, 0.0)
-    legs(b, up, up + 0.2 * span, leg_, 45.0, through=True)
-    legs(b, up + 0.2 * span, up + 0.48 * span, tuck, 25.0)
-    legs(b, up + 0.6 * span, up + 0.86 * span, (0.05, -0.76, 0.2), 10.0, through=True)
+    legs(b, up, up + 0.16 * span, leg_, 45.0, through=True)
+    legs(b, up + 0.16 * span, up + 0.44 * span, tuck, 25.0)
+    legs(b, up + 0.52 * span, up + 0.7 * span, (0.05, -0.62, 0.26), 15.0, through=True)
     b.trunk(up, up + 0.45 * span, 26.0)
     b.trunk(up + 0.55 * span, down, 6.0)
     b.look(up, up + 0.4 * span, 6.0)
@@ -204,7 +250,7 @@ def backflip(b: Score) -> Span:
     b.revolved[0] -= 360.0
     for side in SIDES:
         yaw = b.heading + b.out(side) * who.toe_out
-        plant(b, side, up + 0.86 * span, down, b.world(*b.stance(side, 1.1)), yaw)
+        plant(b, side, up + 0.7 * span, down, b.world(*b.stance(side, 1.1)), yaw)
     land(b, down, b.vary(0.28, 0.04))
     end = b.now
     home(b)
@@ -217,13 +263,14 @@ def jump_kick(b: Score) -> Span:
     start = b.now
     count = int(b.rng.integers(1, 3))
     walk(b, count, length=0.5 * k, seconds=b.vary(0.46, 0.02))
+    still(b)
     side = b.hand if count % 2 else b.hand
     other = b.other(side)
     t = b.now
     crouch(b, b.beat(0.3), b.vary(0.2, 0.02), 0.08)
-    t, push = b.now, b.beat(0.22, 0.05)
+    t, push = b.now, b.vary(0.21, 0.01)
     up = t + push
-    root(b, t, up, on_foot(b, 5.0, 0.07 * k), even=False)
+    root(b, t, up, on_foot(b, 5.0, 0.03 * k), even=False)
     b.turn(t, up, 0.0, -2.0, 0.0)
     b.trunk(t, up, 2.0)
     b.look(t, up)
@@ -238,8 +285,8 @@ def jump_kick(b: Score) -> Span:
     b.fly(down, b.world(0.0, who.standing - 0.09 * k, 0.25 * who.ball_ahead - 0.02), 0.0, 4.0, 0.0)
     lift(b, other, up)
     leg(b, other, up, up + 0.5 * span, (0.04, -0.52, -0.12 if b.rng.random() < 0.5 else 0.16), 40.0)
-    high = b.vary(-0.12, 0.1)
-    far = math.sqrt(0.835**2 - high**2)
+    high = b.vary(-0.16, 0.1)
+    far = math.sqrt(0.85**2 - high**2)
     leg(b, side, up + 0.12 * span, up + 0.45 * span, (0.02, high, far), 20.0)
     leg(b, side, up + 0.5 * span, up + 0.8 * span, (0.03, -0.62, 0.25), 15.0)
     leg(b, other, up + 0.5 * span, up + 0.8 * span, (0.03, -0.78, -0.02), 25.0)
@@ -252,7 +299,7 @@ def jump_kick(b: Score) -> Span:
         ahead = 0.12 * k if s == side else -0.08 * k
         late = 0.07 if s == side else 0.0
         plant(b, s, up + 0.8 * span + late, down + late, b.world(*b.stance(s, 1.2, ahead)), yaw)
-    land(b, down + 0.02, b.vary(0.2, 0.03), arms=(0.25, -0.35, 0.45))
+    land(b, down, b.vary(0.2, 0.03), arms=(0.25, -0.35, 0.45))
     end = b.now
     home(b)
     return start, end
@@ -263,6 +310,7 @@ def hand_flip(b: Score) -> Span:
     k, who = b.who.height / 1.75, b.who
     start = b.now
     walk(b, int(b.rng.integers(1, 3)), length=0.5 * k, seconds=b.vary(0.46, 0.02))
+    still(b)
     side = b.hand
     other = b.other(side)
     t = b.now
@@ -291,17 +339,17 @@ def hand_flip(b: Score) -> Span:
     leg(b, other, t - 0.05, t + reach, (0.03, -0.8, -0.22), 45.0)
     leg(b, other, t + reach, t + reach + 0.3, (0.03, -0.83, -0.12), 45.0)
     b.look(t, t + reach, -30.0)
-    root(b, t, t + reach, (0.0, 0.82 * k, ahead + 0.02 * k), through=True)
-    b.turn(t, t + reach, 0.0, 98.0, 0.0, through=True, even=True)
+    root(b, t, t + reach, on_hands(b, palm, (0.0, 116.0, 0.0), (-6.0, 0.0, 0.0), 0.95, 0.6), through=True)
+    b.turn(t, t + reach, 0.0, 116.0, 0.0, through=True, even=True)
     b.trunk(t, t + reach, -6.0)
     t += reach
     push = b.beat(0.13)
-    for pitch, bend in ((140.0, -14.0), (182.0, -22.0), (218.0, -24.0)):
-        place = on_hands(b, palm, (0.0, pitch, 0.0), (bend, 0.0, 0.0), 0.96)
+    for pitch, bend, upright in ((152.0, -14.0, 0.3), (186.0, -20.0, 0.0), (218.0, -22.0, 0.2)):
+        place = on_hands(b, palm, (0.0, pitch, 0.0), (bend, 0.0, 0.0), 0.96, upright)
         root(b, t, t + push, place, through=pitch < 200)
         b.turn(t, t + push, 0.0, pitch, 0.0, through=pitch < 200, even=True)
         b.trunk(t, t + push, bend)
-        if pitch < 150:
+        if pitch < 160:
             tiptoe(b, t - 0.1, t + 0.3 * push, 50.0, side)
             lift(b, side, t + 0.3 * push)
             leg(b, side, t + 0.3 * push, t + 2.2 * push, (0.03, -0.82, -0.2), 45.0)
@@ -313,8 +361,7 @@ def hand_flip(b: Score) -> Span:
     b.fly(down, b.world(0.0, who.standing - 0.1 * k, 0.25 * who.ball_ahead - 0.16 * k), 0.0, 345.0, 0.0)
     legs(b, t, t + 0.6 * span, (0.04, -0.78, 0.06), 20.0)
     hands(b, t, down + 0.1, (0.05, 0.85, 0.2))
-    for s in SIDES:
-        b.move(f"{s}_wrist", t, t + 0.2, (0.0, 0.0, 0.0))
+    unpalm(b, t)
     b.trunk(t, down, -10.0)
     b.look(t, down, -14.0)
     b.revolved[0] += 360.0
@@ -332,6 +379,7 @@ def hand_flip(b: Score) -> Span:
 def cartwheel(b: Score) -> Span:
     """Sideways over one hand and the other, legs apart."""
     k, who = b.who.height / 1.75, b.who
+    still(b)
     start = b.now
     side = b.hand  # leads
     other, sign = b.other(side), b.out(side)
@@ -357,26 +405,27 @@ def cartwheel(b: Score) -> Span:
     gap = b.vary(0.14, 0.008)
     far = (0.45, -0.70, 0.0)
     leg(b, other, t - 0.2 * step, t + 1.2 * gap, far, 45.0)
-    palms(b, side, t - 0.05, t + gap, 0.0, first)
+    palms(b, side, t - 0.05, t + gap, 0.0, first, 0.8 * turned)
     b.trunk(t, t + 2 * gap, -4.0)
     b.look(t, t + gap, -28.0)
-    root(b, t, t + gap, (0.0, 0.86 * k, lead + 0.1 * k), through=True)
-    b.turn(t, t + gap, turned, 0.0, -sign * 82.0, through=True, even=True)
+    root(b, t, t + gap, (0.0, 0.84 * k, lead + 0.06 * k), through=True)
+    b.turn(t, t + gap, turned, 0.0, -sign * 92.0, through=True, even=True)
     t += gap
-    palms(b, other, t - gap, t + gap, 0.0, second)
+    palms(b, other, t - gap, t + gap, 0.0, second, 0.8 * turned)
     tiptoe(b, t - gap, t + 0.3 * gap, 50.0, side)
     lift(b, side, t + 0.3 * gap)
     leg(b, side, t + 0.3 * gap, t + 2.2 * gap, far, 45.0)
     middle = (0.0, WRIST * k, 0.5 * (first + second))
-    for share in (-124.0, -168.0, -212.0):
-        shift = 0.06 * k * (1 if share < -180 else -1 if share > -150 else 0)
-        place = on_hands(b, (0.0, middle[1], middle[2] + shift), (turned, 0.0, sign * share), far=0.93)
+    for share, shift, upright in ((-132.0, -0.10, 0.6), (-172.0, 0.0, 0.0), (-212.0, 0.08, 0.4)):
+        on = (0.0, middle[1], middle[2] + shift * k)
+        place = on_hands(b, on, (turned, 0.0, sign * share), far=0.93, upright=upright)
         root(b, t, t + gap, place, through=True)
         b.turn(t, t + gap, turned, 0.0, sign * share, through=True, even=True)
         t += gap
     # the other foot comes down, then the leading one
     one, two = second + 0.52 * k, second + 0.92 * k
     b.reach(side, t - 0.3 * gap, t + 2 * gap, (0.35, 0.75, 0.1), arc=0.0, exact=True)
+    unpalm(b, t - 0.3 * gap)
     root(b, t, t + gap, (0.0, 0.82 * k, one - 0.16 * k), through=True)
     b.turn(t, t + gap, turned * 1.05, 0.0, -sign * 268.0, through=True, even=True)
     plant(
@@ -384,16 +433,13 @@ def cartwheel(b: Score) -> Span:
     )
     t += gap
     b.reach(other, t, t + 2 * gap, (0.35, 0.6, 0.1), arc=0.0, exact=True)
-    for s in SIDES:
-        b.move(f"{s}_wrist", t, t + 0.2, (0.0, 0.0, 0.0))
+    unpalm(b, t)
     root(b, t, t + 1.3 * gap, (0.0, who.standing - 0.06 * k, one + 0.06 * k), through=True)
     b.turn(t, t + 1.3 * gap, turned * 1.15, 4.0, -sign * 325.0, through=True, even=True)
     t += 1.3 * gap
     plant(b, side, t - 0.9 * gap, t + 0.8 * gap, b.world(0.0, 0.0, two), b.heading + 1.2 * turned, tip=15.0)
     b.revolved[1] -= sign * 360.0
     b.heading += turned * 1.2
-    here = b.local(b.world(0.0, 0.0, 0.0))
-    del here
     b.settle()
     b.rise(t, t + b.beat(0.6))
     b.trunk(t, t + 0.4, 0.0)
@@ -428,8 +474,9 @@ def _kick_up(b: Score, ahead: float, side: str) -> float:
     tiptoe(b, t - 0.25, t, 45.0, other)
     lift(b, other, t)
     leg(b, other, t, t + down, (0.03, -0.8, -0.22), 40.0)
-    root(b, t, t + down, (0.0, 0.8 * k, lead + 0.1 * k), through=True)
-    b.turn(t, t + down, 0.0, 98.0, 0.0, through=True, even=True)
+    palm = (0.0, WRIST * k, ahead)
+    root(b, t, t + down, on_hands(b, palm, (0.0, 114.0, 0.0), (4.0, 0.0, 0.0), 0.95, 0.6), through=True)
+    b.turn(t, t + down, 0.0, 114.0, 0.0, through=True, even=True)
     b.trunk(t, t + down, 4.0)
     b.look(t, t + down, -32.0)
     t += down
@@ -438,9 +485,10 @@ def _kick_up(b: Score, ahead: float, side: str) -> float:
     lift(b, side, t + 0.15 * swing)
     leg(b, other, t, t + swing, (0.03, -0.83, -0.1), 45.0)
     leg(b, side, t + 0.15 * swing, t + 1.7 * swing, (0.03, -0.835, 0.0), 45.0)
-    palm = (0.0, WRIST * k, ahead)
-    for pitch, bend in ((142.0, 0.0), (174.0, -5.0)):
-        root(b, t, t + swing, on_hands(b, palm, (0.0, pitch, 0.0), (bend, 0.0, 0.0), 0.95), through=pitch < 150)
+    for pitch, bend in ((148.0, 0.0), (174.0, -5.0)):
+        upright = 0.4 if pitch < 150 else 0.0
+        place = on_hands(b, palm, (0.0, pitch, 0.0), (bend, 0.0, 0.0), 0.95, upright)
+        root(b, t, t + swing, place, through=pitch < 150)
         b.turn(t, t + swing, 0.0, pitch - b.rest_pitch, 0.0, through=pitch < 150, even=True)
         b.move("trunk", t, t + swing, (bend, 0.0, 0.0), exact=True)
         t += swing
@@ -455,19 +503,18 @@ def _come_down(b: Score, t: float, ahead: float, side: str) -> float:
     palm = (0.0, WRIST * k, ahead)
     swing = b.beat(0.36)
     leg(b, side, t, t + swing, (0.03, -0.76, 0.36), 20.0)
-    root(b, t, t + swing, on_hands(b, palm, (0.0, 145.0, 0.0), (2.0, 0.0, 0.0), 0.95), through=True)
+    root(b, t, t + swing, on_hands(b, palm, (0.0, 145.0, 0.0), (2.0, 0.0, 0.0), 0.95, 0.4), through=True)
     b.turn(t, t + swing, 0.0, 145.0, 0.0, through=True, even=True)
     b.trunk(t, t + swing, 6.0)
     t += swing
-    b.turn(t, t + swing, 0.0, 100.0, 0.0, through=True, even=True)
-    root(b, t, t + swing, (0.0, 0.8 * k, 0.45 * k), through=True)
+    b.turn(t, t + swing, 0.0, 108.0, 0.0, through=True, even=True)
+    root(b, t, t + swing, on_hands(b, palm, (0.0, 108.0, 0.0), (6.0, 0.0, 0.0), 0.95, 0.7), through=True)
     plant(b, side, t - 0.1, t + 0.8 * swing, b.world(b.out(side) * 0.06 * k, 0.0, 0.34 * k), b.heading, tip=25.0)
     t += swing
     plant(b, other, t - 0.3, t + 0.4 * swing, b.world(b.out(other) * 0.08 * k, 0.0, 0.12 * k), b.heading, tip=20.0)
     root(b, t, t + swing, (0.0, who.standing - 0.12 * k, 0.2 * k), through=True)
     b.turn(t, t + swing, 0.0, 40.0, 0.0, through=True, even=True)
-    for s in SIDES:
-        b.move(f"{s}_wrist", t - 0.05, t + 0.25, (0.0, 0.0, 0.0))
+    unpalm(b, t - 0.05)
     hands(b, t - 0.05, t + swing, (0.1, -0.6, 0.5))
     t += swing
     b.settle()
@@ -481,12 +528,12 @@ def handstand(b: Score) -> Span:
     k = b.who.height / 1.75
     start = b.now
     stand(b, b.stance("l"), b.stance("r"))
+    still(b)
     side, ahead = b.hand, 1.02 * k
     t = _kick_up(b, ahead, side)
     palm = (0.0, WRIST * k, ahead)
     end = t + b.beat(1.5, 0.3)
     bent = b.way("stand", "straight", "straight", "split", "bent")
-    pitch = 174.0
     while t < end:
         span = b.beat(0.55, 0.2)
         tilt = b.vary(178.0, 3.0)
@@ -499,8 +546,6 @@ def handstand(b: Score) -> Span:
             place = tuple(v + float(b.rng.normal(0.0, 0.012)) for v in reach[bent])
             leg(b, s, t, t + span, place, b.vary(42.0, 4.0))
         t += span
-        pitch = tilt
-    del pitch
     t = _come_down(b, t, ahead, side)
     b.now = t
     home(b)
@@ -511,6 +556,7 @@ def hand_stand_kicks(b: Score, times: int) -> Span:
     """Hands on the floor, the legs kick up behind, together or one after the other, again and again."""
     k, who = b.who.height / 1.75, b.who
     stand(b, b.stance("l"), b.stance("r"))
+    still(b)
     start = b.now
     t, ahead = b.now, 0.78 * k
     down = b.beat(0.7)
@@ -528,7 +574,7 @@ def hand_stand_kicks(b: Score, times: int) -> Span:
     lead = b.hand
     home_feet = {s: b.last(f"{s}_foot").value for s in SIDES}
     for _ in range(times):
-        push, up, fall = b.beat(0.26), b.beat(0.3), b.beat(0.36)
+        push, up, fall = b.beat(0.28), b.beat(0.5), b.beat(0.46)
         root(b, t, t + push, (0.0, 0.6 * k, 0.03 * k), even=False)
         b.turn(t, t + push, 0.0, 82.0, 0.0)
         t += push
@@ -538,11 +584,11 @@ def hand_stand_kicks(b: Score, times: int) -> Span:
             tiptoe(b, t - 0.15, t + 0.1 + late, 50.0, s)
             lift(b, s, t + 0.1 + late)
             if way == "together":
-                leg(b, s, t + 0.1, t + 0.6 * up, (0.05, -0.45, 0.22), 40.0)
-                leg(b, s, t + 0.6 * up, t + 1.1 * up, (0.05, -0.8, -0.16), 40.0)
+                leg(b, s, t + 0.1, t + 0.65 * up, (0.05, -0.5, 0.24), 40.0, through=True)
+                leg(b, s, t + 0.65 * up, t + 1.1 * up, (0.05, -0.8, -0.16), 40.0)
             else:
                 leg(b, s, t + 0.1 + late, t + up + late, (0.05, -0.79, -0.22 if s == lead else -0.05), 40.0)
-        place = on_hands(b, palm, (0.0, high, 0.0), (8.0, 0.0, 0.0), 0.93)
+        place = on_hands(b, palm, (0.0, high, 0.0), (8.0, 0.0, 0.0), 0.93, 0.3)
         root(b, t, t + up, place, even=False)
         b.turn(t, t + up, 0.0, high, 0.0)
         b.trunk(t, t + up, b.vary(6.0, 3.0))
@@ -559,8 +605,7 @@ def hand_stand_kicks(b: Score, times: int) -> Span:
         lead = b.other(lead)
         t += fall + 0.12
     up = b.beat(0.7)
-    for s in SIDES:
-        b.move(f"{s}_wrist", t, t + 0.4 * up, (0.0, 0.0, 0.0))
+    unpalm(b, t)
     b.rise(t, t + up)
     b.relax(t, t + 1.1 * up)
     b.now = t + up

@@ -18,6 +18,7 @@ from miburi.perform.bodies.curves import RATE, curve, framed, lower, unrest
 from miburi.perform.bodies.people import Person
 from miburi.perform.bodies.score import SIDES, Score
 
+_OVER = 0.014  # of the body's height: what wrists keep from the floor
 REACH = 0.995  # of a leg's length: knees are never locked
 _J = {name: k for k, name in enumerate(people.JOINTS)}
 _LONG = {"l": "Left", "r": "Right"}
@@ -108,10 +109,24 @@ def _bent(a: float, b: float, origin: Floats, target: Floats, onset: float) -> t
     return unit(step), along, np.sqrt(np.maximum(a * a - along * along, 0.0))
 
 
-def _leg(who: Person, hip: Floats, ankle: Floats, across: Floats) -> tuple[Floats, Floats]:
-    """Frames (T, 3, 3) of thigh and shank; `across` is the knee's axis to the left, roughly."""
+def _leg(
+    who: Person, hip: Floats, ankle: Floats, across: Floats, hips: Floats, loose: Floats
+) -> tuple[Floats, Floats]:
+    """Frames (T, 3, 3) of thigh and shank.
+
+    `across` is the knee's axis to the left, roughly; as far as the leg is `loose` (T,), the knee points where the
+    pelvis does once the thigh is swung from hanging to its place without a twist.
+    """
     direction, along, beside = _bent(who.thigh, who.shank, hip, ankle, REACH)
     pole = unit(np.cross(direction, across), (0.0, 0.0, 1.0))
+    rows = np.flatnonzero(loose > 0)
+    if len(rows):
+        d, down, ahead = direction[rows], -hips[rows, :, 1], hips[rows, :, 2]
+        axis = np.cross(down, d)
+        share = 1.0 / np.maximum(1.0 + np.sum(down * d, axis=1, keepdims=True), 0.05)
+        swung = ahead + np.cross(axis, ahead) + share * np.cross(axis, np.cross(axis, ahead))
+        mixed = (1 - loose[rows, None]) * pole[rows] + loose[rows, None] * swung
+        pole[rows] = unit(mixed - np.sum(mixed * d, axis=1, keepdims=True) * d, (0.0, 0.0, 1.0))
     knee = hip + along[:, None] * direction + beside[:, None] * pole
     axis = np.cross(pole, direction)
     thigh_y = unit(hip - knee)
@@ -177,6 +192,27 @@ class Body(NamedTuple):
 
 Noise = Callable[[int, float], Floats]
 """(width, hz) → (T, width)"""
+
+
+def _off_floor(
+    who: Person, s: str, shoulder: Floats, hand: Floats, chest: Floats, swivel: Floats
+) -> Floats:
+    """By how much more an elbow is turned about its arm's line to stay above the floor (T,), degrees."""
+    low = 2 * _OVER * who.height
+    rows = np.flatnonzero(np.minimum(shoulder[:, 1], hand[:, 1]) < 0.75 * who.upper_arm)
+    extra = np.zeros(len(swivel))
+    if not len(rows):
+        return extra
+    sign = 1.0 if s == "l" else -1.0
+    tries = np.arange(-180.0, 181.0, 15.0)
+    cost = np.empty((len(tries), len(rows)))
+    for n, more in enumerate(tries):
+        upper, _ = _arm(who, s, shoulder[rows], hand[rows], chest[rows], swivel[rows] + more)
+        high = shoulder[rows, 1] + sign * who.upper_arm * upper[:, 1, 0]
+        cost[n] = np.maximum(low - high, 0.0) / (0.02 * who.height) + (more / 75.0) ** 2
+    weight = np.exp(-3.0 * (cost - cost.min(axis=0)))
+    extra[rows] = (tries[:, None] * weight).sum(axis=0) / weight.sum(axis=0)
+    return _slow(extra)
 
 
 def embody(b: Score, rng: np.random.Generator, name: str = "", fps: float = 2 * RATE) -> Motion:
@@ -245,7 +281,10 @@ def pose(b: Score, t: Floats, noise: Noise, paths: Sequence[flight.Path] = ()) -
         level = np.linalg.norm((pelvis + drop - ankles[s])[:, [0, 2]], axis=1)
         height = np.sqrt(np.maximum((REACH * leg) ** 2 - level**2, (0.3 * leg) ** 2))
         limit = lower(limit, ankles[s][:, 1] + height - drop[:, 1] + 1.5 * free[s])
-    pelvis[:, 1] -= _ahead(pelvis[:, 1] - lower(pelvis[:, 1], limit))
+    dip = pelvis[:, 1] - lower(pelvis[:, 1], limit)
+    for flight_ in b.flights:  # legs that are stretched when they leave the ground are drawn after
+        dip[slice(*np.searchsorted(t, [flight_.start - 0.03, flight_.end]))] = 0.0
+    pelvis[:, 1] -= _ahead(dip)
     jitter = 2e-4
     pelvis = pelvis + (jitter * noise(3, 7.0) + 0.0007 * who.tremor * noise(3, 2.5))
 
@@ -275,9 +314,17 @@ def pose(b: Score, t: Floats, noise: Noise, paths: Sequence[flight.Path] = ()) -
         # the knee's axis lies between pelvis and foot, so that the knee points over the toes
         own = 0.55 * (1 - loose[s][:, :1])
         across = unit((1 - own) * hips[:, :, 0] + own * unit(soles[s][:, :, 0]))
-        thigh, shank = _leg(who, hip, ankles[s], across)
+        thigh, shank = _leg(who, hip, ankles[s], across, hips, loose[s][:, 0])
+        if loose[s].any():
+            sole = soles[s]
+            for _ in range(2):  # who is in the air does not go through the floor either
+                soles[s] = _between(sole, shank @ _turn("X", loose[s][:, 1]), loose[s][:, 0])
+                tip = ankles[s][:, 1] + _apply(soles[s], np.array(people.tip(who)))[:, 1]
+                ankle = np.minimum(tip, ankles[s][:, 1] - 0.03 * who.height) - 0.002
+                ankles[s][:, 1] += np.minimum(loose[s][:, 0] * 4.0, 1.0) * (-lower(-ankle, 0.0 * ankle, 0.004) - ankle)
+                thigh, shank = _leg(who, hip, ankles[s], across, hips, loose[s][:, 0])
+            soles[s] = _between(sole, shank @ _turn("X", loose[s][:, 1]), loose[s][:, 0])
         knee = hip + _apply(thigh, np.array([0.0, -who.thigh, 0.0]))
-        soles[s] = _between(soles[s], shank @ _turn("X", loose[s][:, 1]), loose[s][:, 0])
         world[f"{long}UpLeg"], world[f"{long}Leg"], world[f"{long}Foot"] = thigh, shank, soles[s]
         pitch = curve(k[f"{s}_sole"], t)[:, 1]
         # toes stay on the ground under a heel that rises, and follow the foot once it is clear of it
@@ -341,6 +388,7 @@ def _upper(
     )
     middle = at["Spine2"] + _apply(chest, np.array([0.0, -0.01 * who.height, 0.012 * who.height]))
     hand = _clear(who, (middle, chest), hand)
+    hand[:, 1] = -lower(-hand[:, 1], np.full(len(t), -_OVER * who.height), 0.004)
     # the shoulder goes with the hand: up when it is raised, ahead when it reaches
     seen = np.einsum("tji,tj->ti", chest, hand - rest) / who.arm * [sign, 1.0, 1.0]
     u = np.clip(0.5 + 0.55 * seen[:, 1], 0.0, 1.0)
@@ -352,7 +400,29 @@ def _upper(
     upper, fore = _arm(who, s, shoulder, hand, chest, swivel)
     elbow = shoulder + sign * who.upper_arm * upper[:, :, 0]
     swivel = swivel + 55.0 * _inside(who, (middle, chest), elbow)  # elbows go round the trunk
+    swivel = swivel + _off_floor(who, s, shoulder, hand, chest, swivel)
     upper, fore = _arm(who, s, shoulder, hand, chest, swivel)
     wrist = curve(b.tracks[f"{s}_wrist"], t) + 2.0 * noise(3, 0.8)
     world[f"{long}Shoulder"], world[f"{long}Arm"], world[f"{long}ForeArm"] = collar, upper, fore
-    world[f"{long}Hand"] = fore @ _turn("XYZ", wrist[:, 2], -sign * wrist[:, 1], -sign * wrist[:, 0])
+    flat = curve(b.tracks[f"{s}_palm"], t)
+    free = fore @ _turn("XYZ", wrist[:, 2], -sign * wrist[:, 1], -sign * wrist[:, 0])
+    yaw = np.radians(flat[:, 1])
+    world[f"{long}Hand"] = _between(free, _level(sign * np.sin(yaw), sign * np.cos(yaw)), flat[:, 0])
+    # fingers do not go through the floor
+    own = world[f"{long}Hand"]
+    deep = 0.02 * who.height - (hand[:, 1] + sign * own[:, 1, 0] * people.HAND * who.height * who.arms)
+    u = np.clip(deep / (0.05 * who.height), 0.0, 1.0)
+    world[f"{long}Hand"] = _between(own, _level(*_slow(own[:, [0, 2], 0]).T), u * u * (3 - 2 * u))
+
+
+def _slow(x: Floats) -> Floats:
+    """Rows (T, …) without what is quicker than a tenth of a second."""
+    slow: Floats = gaussian_filter1d(x, 0.07 * RATE, axis=0, mode="nearest")
+    return slow
+
+
+def _level(x: Floats, z: Floats) -> Floats:
+    """Frames (T, 3, 3) with the second axis upright and the first as near to (x, ·, z) as that allows."""
+    first = unit(np.stack([x, np.zeros_like(x), z], axis=-1), (1.0, 0.0, 0.0))
+    up = np.broadcast_to([0.0, 1.0, 0.0], first.shape)
+    return np.stack([first, up, np.cross(first, up)], axis=-1)

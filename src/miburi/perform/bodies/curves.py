@@ -97,7 +97,12 @@ def framed(
         rows = slice(edges[i], edges[i + 1])
         weight = _weights(keys, i, t[rows])
         there = weight[:, :1]
-        result[rows] = (1 - there) * place(keys[i], rows) + there * place(keys[i + 1], rows)
+        one, two = place(keys[i], rows), place(keys[i + 1], rows)
+        joint = {keys[i].frame, keys[i + 1].frame} - {"world"}
+        if joint in ({"hip"}, {"arm"}) and "world" in (keys[i].frame, keys[i + 1].frame):
+            result[rows] = _round(one, two, there, frames[joint.pop()][0][rows])
+        else:
+            result[rows] = (1 - there) * one + there * two
         for column, slope, k in ((1, speeds, i), (2, speeds, i + 1), (3, bends, i), (4, bends, i + 1)):
             if slope[k].any():
                 own = keys[k].frame == "world"
@@ -108,6 +113,16 @@ def framed(
         if any(keys[i + 1].arc):
             bend = 16 * there**2 * (1 - there) ** 2
             result[rows] += bend * (arcs[rows] @ (np.array(keys[i + 1].arc) * [mirror, 1.0, 1.0]))
+    return result
+
+
+def _round(a: Floats, b: Floats, there: Floats, joint: Floats) -> Floats:
+    """Part of the way from a to b (T, 3), round a limb's first joint rather than through it."""
+    one, two = a - joint, b - joint
+    far, near = (np.maximum(np.linalg.norm(v, axis=1, keepdims=True), 1e-6) for v in (one, two))
+    way = (1 - there) * one / far + there * two / near
+    length = np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 0.05)
+    result: Floats = joint + ((1 - there) * far + there * near) * way / length
     return result
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from miburi.perform.bodies.acrobatics import hands, leg, lift, plant, tiptoe
+from miburi.perform.bodies.acrobatics import hands, leg, lift, plant, still, tiptoe
 from miburi.perform.bodies.gestures import Span
 from miburi.perform.bodies.score import SIDES, Score
 from miburi.perform.bodies.steps import home, stand
@@ -15,6 +15,7 @@ def spins(b: Score, times: int) -> Span:
     sign = b.out(side)
     other = b.other(side)  # carries
     stand(b, b.stance("l"), b.stance("r"))
+    still(b)
     t = b.now
     start = t
     pose = b.way("spin", "knee", "knee", "behind", "low")
@@ -67,6 +68,7 @@ def russian(b: Score, times: int) -> Span:
     """Squat kicks: deep down on the balls of the feet, arms folded, the legs shoot out in turn with a hop."""
     k, who = b.who.height / 1.75, b.who
     stand(b, b.stance("l", 0.9), b.stance("r", 0.9))
+    still(b)
     t = b.now
     start = t
     down = b.beat(0.7)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
 from miburi.motion import Floats
@@ -26,6 +27,7 @@ _MASSES = (
 )  # fmt: skip
 _OWN = 0.015  # of the body's mass · height²: what the segments' own extent adds to the inertia
 _STEPS = 60.0  # samples a second
+_SLOW = 0.08  # seconds: quicker moves of the limbs do not move the root
 
 
 class Path(NamedTuple):
@@ -72,7 +74,9 @@ def path(b: Score, flight: Flight, pose: Callable[[Floats], Body]) -> Path:
     }
     whence, whither = (np.array(b.tracks["turn"][i].value) for i in keys["turn"])
     body = pose(t)
-    middle, inertia = balance(b.who, body)
+    middle, inertia = (
+        gaussian_filter1d(x, _SLOW / (t[1] - t[0]), axis=0, mode="nearest") for x in balance(b.who, body)
+    )
     axis = [1, 0, 2][int(np.abs(whither - whence).argmax())]  # yaw is about y
     rate = 1.0 / inertia[:, axis]
     share = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]))])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from miburi.perform.bodies.acrobatics import hands, leg, legs, lift, palms, plant, root, tiptoe
+from miburi.perform.bodies.acrobatics import hands, leg, legs, lift, palms, plant, root, still, tiptoe, unpalm
 from miburi.perform.bodies.gestures import Span
 from miburi.perform.bodies.score import SIDES, Score
 from miburi.perform.bodies.steps import home, stand
@@ -13,6 +13,7 @@ LYING = 0.115  # height of the root of who lies on the back, metres for a height
 def rug_pull(b: Score) -> Span:
     """The ground goes from under the feet: they shoot ahead, the body falls on seat and back; arms fly up."""
     k = b.who.height / 1.75
+    still(b)
     start = b.now
     t = b.now
     b.look(t, t + 0.4, 4.0)
@@ -63,6 +64,7 @@ def lie_down(b: Score) -> Span:
     """Down on the floor by way of a squat and the seat, onto the back."""
     k = b.who.height / 1.75
     stand(b, b.stance("l"), b.stance("r"))
+    still(b)
     t = b.now
     start = t
     go, sit, back = b.beat(1.0), b.beat(0.7), b.beat(1.1)
@@ -81,10 +83,10 @@ def lie_down(b: Score) -> Span:
     b.trunk(t, t + sit, 26.0)
     tiptoe(b, t, t + sit, 0.0)
     t += sit
+    unpalm(b, t)
     for n, s in enumerate((side, b.other(side))):
         late = 0.25 * n
         b.reach(s, t + late, t + back, (0.35, -0.8, 0.0), arc=0.05)
-        b.move(f"{s}_wrist", t, t + 0.5 * back, (0.0, 0.0, 0.0))
         lift(b, s, t + late)
         x = b.out(s) * 0.11 * k
         b.move(f"{s}_foot", t + late, t + 0.9 * back + late, b.world(x, 0.11 * k, seat + 0.47 * b.who.height))
@@ -128,8 +130,8 @@ def get_up(b: Score) -> Span:
     b.turn(t, t + over, 0.0, 46.0, 0.0)
     b.trunk(t, t + over, 42.0)
     for s in SIDES:
-        b.move(f"{s}_wrist", t + 0.4 * over, t + over, (0.0, 0.0, 0.0))
         b.reach(s, t + 0.35 * over, t + over + 0.1, (0.1, -0.55, 0.6), arc=0.0)
+    unpalm(b, t + 0.35 * over)
     t += over
     tiptoe(b, t, t + 0.5 * rise, 0.0)
     b.settle()
@@ -145,6 +147,7 @@ def somersault(b: Score) -> Span:
     """Backwards over the rounded back: squat, seat, shoulders, hands beside the ears, feet, and up."""
     k, who = b.who.height / 1.75, b.who
     stand(b, b.stance("l"), b.stance("r"))
+    still(b)
     t = b.now
     start = t
     squat, sit = b.beat(0.75), b.beat(0.38)
@@ -161,8 +164,6 @@ def somersault(b: Score) -> Span:
     b.trunk(t, t + sit, 52.0)
     b.look(t, t + sit, 26.0)
     hands(b, t, t + 1.3 * sit, (-0.02, 0.34, 0.22))
-    for s in SIDES:
-        b.move(f"{s}_wrist", t, t + sit, (-60.0, 0.0, 0.0))
     t += sit
     tuck = (0.05, -0.36, 0.36)
     for s in SIDES:
@@ -170,16 +171,16 @@ def somersault(b: Score) -> Span:
         lift(b, s, t - 0.02)
         leg(b, s, t - 0.02, t + 0.3, tuck, 25.0)
     roll = b.beat(0.2, 0.06)
-    for pitch, high, back in ((-92.0, 0.13, -0.16), (-135.0, 0.30, -0.30), (-178.0, 0.54, -0.52), (-222.0, 0.62, -0.74)):
+    for pitch, high, back in ((-92.0, 0.13, -0.16), (-135.0, 0.34, -0.30), (-178.0, 0.61, -0.52), (-222.0, 0.68, -0.74)):
         root(b, t, t + roll, (0.0, high * k, seat + back * k), through=True)
         b.turn(t, t + roll, 0.0, pitch, 0.0, through=True, even=True)
         b.trunk(t, t + roll, 54.0)
         t += roll
     put = seat - 0.50 * k
     for s in SIDES:  # the hands stand where the ears were
-        b.reach(s, t - 2.2 * roll, t - 1.6 * roll, (b.out(s) * 0.17 * k, 0.05 * k, put), "stage", arc=0.0, exact=True)
+        palms(b, s, t - 3.4 * roll, t - 1.7 * roll, b.out(s) * 0.19 * k, put, 180.0)
     legs(b, t - 2 * roll, t, (0.05, -0.5, 0.42), 15.0)
-    root(b, t, t + 1.2 * roll, (0.0, 0.58 * k, put - 0.42 * k), through=True)
+    root(b, t, t + 1.2 * roll, (0.0, 0.62 * k, put - 0.42 * k), through=True)
     b.turn(t, t + 1.2 * roll, 0.0, -268.0, 0.0, through=True, even=True)
     b.trunk(t, t + 1.2 * roll, 46.0)
     foot = put - 0.36 * k
@@ -189,8 +190,7 @@ def somersault(b: Score) -> Span:
         plant(b, s, t, t + 1.1 * roll, place, b.heading + b.out(s) * who.toe_out, tip=34.0)
     t += 1.2 * roll
     up = b.beat(0.4)
-    for s in SIDES:
-        b.move(f"{s}_wrist", t, t + 0.3, (0.0, 0.0, 0.0))
+    unpalm(b, t)
     b.settle()
     b.pelvis(t, t + up, 0.0, -0.42 * k, -0.16 * k, through=True)
     b.turn(t, t + up, 0.0, 42.0, 0.0, through=True, even=True)

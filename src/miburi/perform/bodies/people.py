@@ -24,7 +24,7 @@ PARENTS = (-1, 0, 1, 2, 3, 4, 3, 6, 7, 8, 3, 10, 11, 12, 0, 14, 15, 16, 0, 18, 1
 _SPINE = (0.04, 0.075, 0.075, 0.085, 0.05)  # hips to spine … neck to head
 _HEAD = 0.115
 _HIP_DROP = 0.03
-_ARM, _FOREARM, _HAND = 0.186, 0.146, 0.108
+_ARM, _FOREARM, HAND = 0.186, 0.146, 0.108
 _THIGH, _SHANK = 0.245, 0.246
 ANKLE = 0.039
 BALL = 0.009  # height of the toe joint
@@ -145,7 +145,7 @@ def skeleton(who: Person) -> Skeleton:
     ends: dict[str, tuple[float, float, float]] = {"Head": (0, _HEAD * h, 0)}
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         ends |= {
-            f"{side}Hand": (sign * _HAND * h * who.arms, 0, 0),
+            f"{side}Hand": (sign * HAND * h * who.arms, 0, 0),
             f"{side}ToeBase": (0, -0.5 * BALL * h, _TOE * h),
         }
     return Skeleton(
@@ -156,6 +156,11 @@ def skeleton(who: Person) -> Skeleton:
         np.array([JOINTS.index(j) for j in ends]),
         np.array(list(ends.values())),
     )
+
+
+def tip(who: Person) -> tuple[float, float, float]:
+    """Where the tip of the toes is in the foot's frame, toes straight, metres."""
+    return (0.0, -(ANKLE - 0.5 * BALL) * who.height, who.ball_ahead + _TOE * who.height)
 
 
 def shoulder(who: Person) -> Floats:

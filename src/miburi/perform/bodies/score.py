@@ -53,6 +53,7 @@ REST: dict[str, Vector] = {
     "head": (0.0, 0.0, 0.0),  # head against chest: pitch, roll, yaw
     "spin": (0.0,),  # pelvis about its own long axis, to the left
     "ankle": (0.0, 0.0),  # how far the foot follows its shank rather than the ground; sole against the shank
+    "palm": (0.0, 0.0),  # how far the hand lies flat on the floor; where its fingers point, degrees
     "swivel": (0.0,),  # elbow about the line from shoulder to wrist, outwards
     "wrist": (0.0, 0.0, 0.0),  # flexion, towards the thumb, roll
 }
@@ -91,6 +92,7 @@ class Score:
         for side in SIDES:
             self.tracks[f"{side}_hand"] = [Key(0.0, self.hand_rest, "arm")]
             self.tracks[f"{side}_swivel"] = [Key(0.0, (0.0,))]
+            self.tracks[f"{side}_palm"] = [Key(0.0, (0.0, self.heading))]
             self.tracks[f"{side}_wrist"] = [Key(0.0, (8.0, 0.0, 0.0))]
             self.tracks[f"{side}_foot"] = [Key(0.0, self.world(*self.stance(side)))]
             self.tracks[f"{side}_sole"] = [Key(0.0, (self.heading + self.out(side) * who.toe_out, 0.0))]

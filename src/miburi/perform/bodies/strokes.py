@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-from miburi.perform.bodies.acrobatics import hands, leg, lift, plant, root, tiptoe
+from miburi.perform.bodies.acrobatics import hands, leg, lift, plant, root, still, sweep, tiptoe
 from miburi.perform.bodies.gestures import Span
 from miburi.perform.bodies.score import SIDES, Score, Vector
 from miburi.perform.bodies.steps import home, stand
 
-_BENCH = 0.52  # height of the bench, metres for a height of 1.75 m
+_BENCH = 0.6  # height of the bench, metres for a height of 1.75 m
 
 
 def _place(angle: float, bend: float, wide: float = 0.06) -> Vector:
@@ -22,9 +22,11 @@ def _place(angle: float, bend: float, wide: float = 0.06) -> Vector:
 def _onto(b: Score, back: bool, lying: bool) -> None:
     """Into the stroke's posture."""
     k = b.who.height / 1.75
+    still(b)
     t = b.now
     if not lying:
         stand(b, b.stance("l", 1.4, 0.08 * k), b.stance("r", 1.4, -0.08 * k))
+        still(b)
         t = b.now
         go = b.beat(0.8)
         if back:
@@ -56,7 +58,7 @@ def _onto(b: Score, back: bool, lying: bool) -> None:
         b.turn(t, t + go, 0.0, 60.0, 0.0, through=True, even=True)
         b.trunk(t, t + go, 20.0)
         b.look(t, t + go, -16.0)
-        root(b, t, t + go, (0.0, 0.74 * k, 0.16 * k), through=True)
+        root(b, t, t + go, (0.0, 0.78 * k, 0.16 * k), through=True)
         hands(b, t, t + go, (0.1, 0.1, 0.75))
         t += go
         b.turn(t, t + up, 0.0, 86.0, 0.0)
@@ -91,7 +93,7 @@ def _off(b: Score, back: bool, lying: bool) -> None:
             b.trunk(t, t + go, 28.0)
             b.look(t, t + go, -4.0)
         else:
-            root(b, t, t + go, (0.0, 0.74 * k, 0.14 * k), through=True)
+            root(b, t, t + go, (0.0, 0.78 * k, 0.14 * k), through=True)
             b.turn(t, t + go, 0.0, 58.0, 0.0)
             b.trunk(t, t + go, 22.0)
         t += go + 0.1
@@ -132,7 +134,7 @@ def crawl(b: Score, times: int, back: bool) -> Span:
     step = cycle / 8
     for s in SIDES:
         shift = 0 if s == side else 4
-        b.reach(s, t, t + 2 * step, _stroke(way[(shift) % 8], back), arc=0.0, exact=True)
+        sweep(b, s, t, t + 2 * step, _stroke(way[shift], back))
     t += 2 * step
     end = t + count * step
     for number in range(count):
@@ -189,7 +191,7 @@ def breast(b: Score, times: int) -> Span:
         t1 = t + out
         for s in SIDES:
             b.move(f"{s}_hand", t1, t1 + 0.55 * pull, (0.3, 0.2, 0.58), "arm", through=True, exact=True, even=True)
-            b.move(f"{s}_hand", t1 + 0.55 * pull, t1 + pull, (-0.2, -0.08, 0.42), "arm", through=True, exact=True, even=True)
+            b.move(f"{s}_hand", t1 + 0.55 * pull, t1 + pull, (-0.16, -0.02, 0.5), "arm", through=True, exact=True, even=True)
             b.move(f"{s}_hand", t1 + pull, t1 + pull + 0.75 * shoot, (-0.1, 0.9, 0.28), "arm", exact=True)
         rise = -16.0 if lying else 8.0
         b.trunk(t, t1 + pull, rise)
