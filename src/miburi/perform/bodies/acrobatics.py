@@ -350,9 +350,9 @@ def hand_flip(b: Score) -> Span:
         b.turn(t, t + push, 0.0, pitch, 0.0, through=pitch < 200, even=True)
         b.trunk(t, t + push, bend)
         if pitch < 160:
-            tiptoe(b, t - 0.1, t + 0.3 * push, 50.0, side)
-            lift(b, side, t + 0.3 * push)
-            leg(b, side, t + 0.3 * push, t + 2.2 * push, (0.03, -0.82, -0.2), 45.0)
+            tiptoe(b, t - 0.2, t - 0.05, 50.0, side)
+            lift(b, side, t - 0.05)
+            leg(b, side, t - 0.05, t + 1.4 * push, (0.03, -0.82, -0.2), 45.0)
         t += push
     span = b.vary(0.3, 0.02)
     far = 0.78 * k
@@ -402,7 +402,7 @@ def cartwheel(b: Score) -> Span:
     tiptoe(b, t + 0.3 * step, t + 0.8 * step, 40.0, other)
     t += step
     first, second = lead + 0.52 * k, lead + 0.95 * k
-    gap = b.vary(0.14, 0.008)
+    gap = b.vary(0.155, 0.008)
     far = (0.45, -0.70, 0.0)
     leg(b, other, t - 0.2 * step, t + 1.2 * gap, far, 45.0)
     palms(b, side, t - 0.05, t + gap, 0.0, first, 0.8 * turned)
@@ -437,7 +437,7 @@ def cartwheel(b: Score) -> Span:
     root(b, t, t + 1.3 * gap, (0.0, who.standing - 0.06 * k, one + 0.06 * k), through=True)
     b.turn(t, t + 1.3 * gap, turned * 1.15, 4.0, -sign * 325.0, through=True, even=True)
     t += 1.3 * gap
-    plant(b, side, t - 0.9 * gap, t + 0.8 * gap, b.world(0.0, 0.0, two), b.heading + 1.2 * turned, tip=15.0)
+    plant(b, side, t - 1.6 * gap, t + 1.2 * gap, b.world(0.0, 0.0, two), b.heading + 1.2 * turned, tip=15.0)
     b.revolved[1] -= sign * 360.0
     b.heading += turned * 1.2
     b.settle()

@@ -117,10 +117,11 @@ def twists(b: Score, times: int) -> Span:
     return start, end
 
 
-def kick(b: Score, times: int) -> Span:
+def kick(b: Score, times: int, side: str = "") -> Span:
     """A foot swings back and kicks ahead; the arms balance."""
     who, k = b.who, b.who.height / 1.75
-    side, other = b.hand, b.other(b.hand)
+    side = side or b.hand
+    other = b.other(side)
     sign = b.out(side)
     t = b.now
     start = t

@@ -163,11 +163,11 @@ def _clear(who: Person, chest: tuple[Floats, Floats], hand: Floats) -> Floats:
     origin, axes = chest
     seen = np.einsum("tji,tj->ti", axes, hand - origin)
     h = who.height
-    aside = np.abs(seen[:, 0]) / (0.115 * h)
+    aside = np.abs(seen[:, 0]) / (0.115 * h * who.girth)
     level = np.abs(seen[:, 1] + 0.08 * h) - 0.19 * h
     before = expit((1.0 - aside) / 0.06) * expit(-level / (0.012 * h))
     soft = 0.012 * h
-    deep = 0.088 * h * np.sqrt(np.clip(1 - aside**2, 0.0, 1.0) + 0.02) - seen[:, 2]
+    deep = 0.088 * h * who.girth * np.sqrt(np.clip(1 - aside**2, 0.0, 1.0) + 0.02) - seen[:, 2]
     pushed = soft * np.logaddexp(0.0, deep / soft)
     return hand + _apply(axes, np.stack([np.zeros_like(deep), np.zeros_like(deep), before * pushed], axis=-1))
 
@@ -177,7 +177,7 @@ def _inside(who: Person, chest: tuple[Floats, Floats], place: Floats) -> Floats:
     origin, axes = chest
     seen = np.einsum("tji,tj->ti", axes, place - origin)
     h = who.height
-    r = np.hypot(seen[:, 0] / (0.11 * h), seen[:, 2] / (0.08 * h))
+    r = np.hypot(seen[:, 0] / (0.11 * h * who.girth), seen[:, 2] / (0.08 * h * who.girth))
     level = np.abs(seen[:, 1] + 0.08 * h) - 0.17 * h
     depth: Floats = 0.08 * np.logaddexp(0.0, (1.0 - r) / 0.08) * expit(-level / (0.015 * h))
     return depth
@@ -412,7 +412,7 @@ def _upper(
     own = world[f"{long}Hand"]
     deep = 0.02 * who.height - (hand[:, 1] + sign * own[:, 1, 0] * people.HAND * who.height * who.arms)
     u = np.clip(deep / (0.05 * who.height), 0.0, 1.0)
-    world[f"{long}Hand"] = _between(own, _level(*_slow(own[:, [0, 2], 0]).T), u * u * (3 - 2 * u))
+    world[f"{long}Hand"] = _between(own, _level(*(_slow(own[:, [0, 2], 0]) + 0.6 * sign * np.stack([np.sin(yaw), np.cos(yaw)], axis=1)).T), u * u * (3 - 2 * u))
 
 
 def _slow(x: Floats) -> Floats:

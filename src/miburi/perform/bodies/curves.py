@@ -120,7 +120,9 @@ def _round(a: Floats, b: Floats, there: Floats, joint: Floats) -> Floats:
     """Part of the way from a to b (T, 3), round a limb's first joint rather than through it."""
     one, two = a - joint, b - joint
     far, near = (np.maximum(np.linalg.norm(v, axis=1, keepdims=True), 1e-6) for v in (one, two))
-    way = (1 - there) * one / far + there * two / near
+    one, two = one / far, two / near
+    angle = np.arccos(np.clip(np.sum(one * two, axis=1, keepdims=True), -0.98, 1.0)) + 1e-6
+    way = (np.sin((1 - there) * angle) * one + np.sin(there * angle) * two) / np.sin(angle)
     length = np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 0.05)
     result: Floats = joint + ((1 - there) * far + there * near) * way / length
     return result
