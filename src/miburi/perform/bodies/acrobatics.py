@@ -185,10 +185,10 @@ def land(b: Score, t: float, deep: float = 0.26, *, arms: Vector = (0.15, -0.35,
     b.turn(t, t + down, 0.0, 110.0 * deep, 0.0)
     b.trunk(t, t + down, 60.0 * deep)
     b.look(t, t + down, -30.0)
-    hands(b, t, t + down, arms)
+    hands(b, t - 0.05, t + down + 0.2, arms)
     t += down + 0.04
     b.rise(t, t + up)
-    b.relax(t + 0.1, t + 1.3 * up)
+    b.relax(t + 0.2, t + 1.5 * up)
     b.now = t + up
 
 
@@ -222,21 +222,21 @@ def backflip(b: Score) -> Span:
     crouch(b, b.beat(0.42), b.vary(0.30, 0.03), 0.16)
     t, push = b.now, b.vary(0.26, 0.01)
     up = t + push
-    root(b, t, up, on_foot(b, -7.0, 0.04 * k, 0.0), even=False)
-    b.turn(t, up, 0.0, -12.0, 0.0)
+    root(b, t, up, on_foot(b, -10.0, 0.03 * k, 0.0), even=False)
+    b.turn(t, up, 0.0, -22.0, 0.0)
     b.trunk(t, up, -14.0)
     b.look(t, up, -16.0)
     tiptoe(b, t + 0.4 * push, up, 48.0)
-    hands(b, t, up + 0.02, (-0.02, 0.9, 0.35))
+    hands(b, t - 0.08, up + 0.04, (-0.02, 0.85, 0.4))
     far = b.vary(0.34, 0.06) * k
-    span = b.vary(0.66, 0.025) * math.sqrt(k)
+    span = b.vary(0.70, 0.02) * math.sqrt(k)
     down = up + span
     under(b, -far)
-    b.fly(down, b.world(0.0, who.standing - 0.13 * k, 0.25 * who.ball_ahead - 0.10 * k), 0.0, -335.0, 0.0)
+    b.fly(down, b.world(0.0, who.standing - 0.13 * k, 0.25 * who.ball_ahead - 0.10 * k), 0.0, -326.0, 0.0)
     for side in SIDES:
         lift(b, side, up)
     pike = b.way("tuck", "tuck", "tuck", "pike") == "pike"
-    tuck = (0.02, -0.32, 0.55) if pike else (0.05, -0.34, 0.36)
+    tuck = (0.02, -0.36, 0.56) if pike else (0.05, -0.42, 0.34)
     leg_ = (0.02, -0.84, 0.0)
     legs(b, up, up + 0.16 * span, leg_, 45.0, through=True)
     legs(b, up + 0.16 * span, up + 0.44 * span, tuck, 25.0)
@@ -245,8 +245,8 @@ def backflip(b: Score) -> Span:
     b.trunk(up + 0.55 * span, down, 6.0)
     b.look(up, up + 0.4 * span, 6.0)
     b.look(up + 0.4 * span, down, -22.0)
-    hands(b, up + 0.05, up + 0.48 * span, (-0.02, -0.62, 0.6))
-    hands(b, up + 0.6 * span, down + 0.05, (0.2, -0.2, 0.8))
+    hands(b, up + 0.04, up + 0.55 * span, (-0.02, -0.4, 0.75))
+    hands(b, up + 0.55 * span, down + 0.15, (0.2, -0.25, 0.8))
     b.revolved[0] -= 360.0
     for side in SIDES:
         yaw = b.heading + b.out(side) * who.toe_out
@@ -267,7 +267,7 @@ def jump_kick(b: Score) -> Span:
     side = b.hand if count % 2 else b.hand
     other = b.other(side)
     t = b.now
-    crouch(b, b.beat(0.3), b.vary(0.2, 0.02), 0.08)
+    crouch(b, b.beat(0.42), b.vary(0.2, 0.02), 0.08)
     t, push = b.now, b.vary(0.21, 0.01)
     up = t + push
     root(b, t, up, on_foot(b, 5.0, 0.03 * k), even=False)
@@ -275,7 +275,7 @@ def jump_kick(b: Score) -> Span:
     b.trunk(t, up, 2.0)
     b.look(t, up)
     tiptoe(b, t + 0.4 * push, up, 45.0, other)
-    hands(b, t, up, (0.1, -0.2, 0.7))
+    hands(b, t - 0.05, up + 0.05, (0.1, -0.35, 0.6))
     knee = (0.03, -0.42, 0.26)
     lift(b, side, t + 0.3 * push)
     leg(b, side, t + 0.3 * push, up + 0.05, knee, 25.0)
@@ -287,13 +287,13 @@ def jump_kick(b: Score) -> Span:
     leg(b, other, up, up + 0.5 * span, (0.04, -0.52, -0.12 if b.rng.random() < 0.5 else 0.16), 40.0)
     high = b.vary(-0.16, 0.1)
     far = math.sqrt(0.85**2 - high**2)
-    leg(b, side, up + 0.12 * span, up + 0.45 * span, (0.02, high, far), 20.0)
+    leg(b, side, up + 0.06 * span, up + 0.48 * span, (0.02, high, far), 20.0)
     leg(b, side, up + 0.5 * span, up + 0.8 * span, (0.03, -0.62, 0.25), 15.0)
     leg(b, other, up + 0.5 * span, up + 0.8 * span, (0.03, -0.78, -0.02), 25.0)
     b.trunk(up, up + 0.45 * span, 8.0, 0.0, b.out(side) * 12.0)
     b.trunk(up + 0.5 * span, down, 6.0)
-    b.reach(side, up, up + 0.45 * span, (0.35, -0.55, -0.1), arc=0.0, exact=True)
-    b.reach(other, up, up + 0.45 * span, (-0.05, 0.0, 0.7), arc=0.0, exact=True)
+    b.reach(side, up, up + 0.7 * span, (0.35, -0.6, 0.1), arc=0.0, exact=True)
+    b.reach(other, up, up + 0.6 * span, (-0.05, -0.15, 0.7), arc=0.0, exact=True)
     for s in SIDES:
         yaw = b.heading + b.out(s) * who.toe_out
         ahead = 0.12 * k if s == side else -0.08 * k
@@ -331,7 +331,7 @@ def hand_flip(b: Score) -> Span:
     b.trunk(t, t + step, 12.0)
     t += step
     gap, palm = 0.19 * k, (0.0, WRIST * k, ahead + 0.62 * k)
-    reach = b.beat(0.2)
+    reach = b.beat(0.26)
     for s in SIDES:
         palms(b, s, t - 0.12, t + reach, b.out(s) * gap, palm[2])
     lift(b, other, t - 0.05)
@@ -343,7 +343,7 @@ def hand_flip(b: Score) -> Span:
     b.turn(t, t + reach, 0.0, 116.0, 0.0, through=True, even=True)
     b.trunk(t, t + reach, -6.0)
     t += reach
-    push = b.beat(0.13)
+    push = b.vary(0.165, 0.008)
     for pitch, bend, upright in ((152.0, -14.0, 0.3), (186.0, -20.0, 0.0), (218.0, -22.0, 0.2)):
         place = on_hands(b, palm, (0.0, pitch, 0.0), (bend, 0.0, 0.0), 0.96, upright)
         root(b, t, t + push, place, through=pitch < 200)
@@ -402,7 +402,7 @@ def cartwheel(b: Score) -> Span:
     tiptoe(b, t + 0.3 * step, t + 0.8 * step, 40.0, other)
     t += step
     first, second = lead + 0.52 * k, lead + 0.95 * k
-    gap = b.vary(0.155, 0.008)
+    gap = b.vary(0.19, 0.01)
     far = (0.45, -0.70, 0.0)
     leg(b, other, t - 0.2 * step, t + 1.2 * gap, far, 45.0)
     palms(b, side, t - 0.05, t + gap, 0.0, first, 0.8 * turned)
@@ -480,7 +480,7 @@ def _kick_up(b: Score, ahead: float, side: str) -> float:
     b.trunk(t, t + down, 4.0)
     b.look(t, t + down, -32.0)
     t += down
-    swing = b.beat(0.34)
+    swing = b.beat(0.4)
     tiptoe(b, t - 0.1, t + 0.15 * swing, 50.0, side)
     lift(b, side, t + 0.15 * swing)
     leg(b, other, t, t + swing, (0.03, -0.83, -0.1), 45.0)
@@ -501,7 +501,7 @@ def _come_down(b: Score, t: float, ahead: float, side: str) -> float:
     k, who = b.who.height / 1.75, b.who
     other = b.other(side)
     palm = (0.0, WRIST * k, ahead)
-    swing = b.beat(0.36)
+    swing = b.beat(0.42)
     leg(b, side, t, t + swing, (0.03, -0.76, 0.36), 20.0)
     root(b, t, t + swing, on_hands(b, palm, (0.0, 145.0, 0.0), (2.0, 0.0, 0.0), 0.95, 0.4), through=True)
     b.turn(t, t + swing, 0.0, 145.0, 0.0, through=True, even=True)
@@ -574,7 +574,7 @@ def hand_stand_kicks(b: Score, times: int) -> Span:
     lead = b.hand
     home_feet = {s: b.last(f"{s}_foot").value for s in SIDES}
     for _ in range(times):
-        push, up, fall = b.beat(0.28), b.beat(0.5), b.beat(0.46)
+        push, up, fall = b.beat(0.32), b.beat(0.56), b.beat(0.56)
         root(b, t, t + push, (0.0, 0.6 * k, 0.03 * k), even=False)
         b.turn(t, t + push, 0.0, 82.0, 0.0)
         t += push

@@ -40,7 +40,7 @@ def spins(b: Score, times: int) -> Span:
         b.turn(t, over, 0.0, 0.0, 0.0)
         b.trunk(t, t + 2 * push, -1.0, 0.0, -sign * 6.0)
         b.look(t + 0.7 * push, over, 0.0)
-        hands(b, t, t + push + 0.25, arms)
+        hands(b, t - 0.05, t + push + 0.4, arms)
         yaw = b.heading + b.out(other) * b.who.toe_out
         was = b.last(f"{other}_sole").value
         b.move(f"{other}_sole", t, t + 0.5 * push, (was[0] - sign * 12.0, 30.0), through=True, even=True)
@@ -52,7 +52,7 @@ def spins(b: Score, times: int) -> Span:
         tiptoe(b, over - 0.02, over + 0.7 * down, 0.0, other)
         plant(b, side, over - 0.15, over + 0.6 * down, b.world(*b.stance(side, 1.2, -0.04 * k)), b.heading + sign * b.who.toe_out)
         b.pelvis(over - 0.05, over + down, 0.0, -0.03 * k, 0.0)
-        hands(b, over - 0.1, over + down, (0.5, -0.55, 0.25))
+        hands(b, over - 0.2, over + down + 0.1, (0.5, -0.55, 0.25))
         b.trunk(over, over + down, 3.0)
         t = over + down + abs(b.vary(0.12, 0.08))
     up = b.beat(0.5)
