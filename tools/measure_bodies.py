@@ -159,11 +159,13 @@ def real(recorded: str) -> None:
     FIGURES.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
 
 
-def compare() -> None:
+def compare(*only: str) -> None:
     """Print where simulated performances lie."""
     data = json.loads(FIGURES.read_text(encoding="utf-8"))
     for keyword, entry in data["keywords"].items():
-        rows = [figures(bodies.imagine(keyword, seed)) for seed in range(8)]
+        if only and keyword not in only:
+            continue
+        rows = [figures(bodies.imagine(keyword, seed)) for seed in range(5)]
         cells = []
         for what, (low, middle, high) in entry["band"].items():
             value = float(np.median([r[what] for r in rows]))

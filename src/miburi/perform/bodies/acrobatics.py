@@ -268,7 +268,7 @@ def jump_kick(b: Score) -> Span:
     other = b.other(side)
     t = b.now
     crouch(b, b.beat(0.42), b.vary(0.2, 0.02), 0.08)
-    t, push = b.now, b.vary(0.21, 0.01)
+    t, push = b.now, b.vary(0.24, 0.01)
     up = t + push
     root(b, t, up, on_foot(b, 5.0, 0.03 * k), even=False)
     b.turn(t, up, 0.0, -2.0, 0.0)
@@ -279,7 +279,7 @@ def jump_kick(b: Score) -> Span:
     knee = (0.03, -0.42, 0.26)
     lift(b, side, t + 0.3 * push)
     leg(b, side, t + 0.3 * push, up + 0.05, knee, 25.0)
-    span = b.vary(0.52, 0.03) * math.sqrt(k)
+    span = b.vary(0.49, 0.02) * math.sqrt(k)
     down = up + span
     under(b, b.vary(0.5, 0.06) * k)
     b.fly(down, b.world(0.0, who.standing - 0.09 * k, 0.25 * who.ball_ahead - 0.02), 0.0, 4.0, 0.0)
@@ -292,7 +292,7 @@ def jump_kick(b: Score) -> Span:
     leg(b, other, up + 0.5 * span, up + 0.8 * span, (0.03, -0.78, -0.02), 25.0)
     b.trunk(up, up + 0.45 * span, 8.0, 0.0, b.out(side) * 12.0)
     b.trunk(up + 0.5 * span, down, 6.0)
-    b.reach(side, up, up + 0.7 * span, (0.35, -0.6, 0.1), arc=0.0, exact=True)
+    b.reach(side, up, up + 0.8 * span, (0.3, -0.55, 0.2), arc=0.0, exact=True)
     b.reach(other, up, up + 0.6 * span, (-0.05, -0.15, 0.7), arc=0.0, exact=True)
     for s in SIDES:
         yaw = b.heading + b.out(s) * who.toe_out
@@ -331,7 +331,7 @@ def hand_flip(b: Score) -> Span:
     b.trunk(t, t + step, 12.0)
     t += step
     gap, palm = 0.19 * k, (0.0, WRIST * k, ahead + 0.62 * k)
-    reach = b.beat(0.26)
+    reach = b.beat(0.3)
     for s in SIDES:
         palms(b, s, t - 0.12, t + reach, b.out(s) * gap, palm[2])
     lift(b, other, t - 0.05)
@@ -343,8 +343,8 @@ def hand_flip(b: Score) -> Span:
     b.turn(t, t + reach, 0.0, 116.0, 0.0, through=True, even=True)
     b.trunk(t, t + reach, -6.0)
     t += reach
-    push = b.vary(0.165, 0.008)
-    for pitch, bend, upright in ((152.0, -14.0, 0.3), (186.0, -20.0, 0.0), (218.0, -22.0, 0.2)):
+    push = b.vary(0.2, 0.01)
+    for pitch, bend, upright in ((152.0, -14.0, 0.3), (186.0, -20.0, 0.0), (226.0, -22.0, 0.25)):
         place = on_hands(b, palm, (0.0, pitch, 0.0), (bend, 0.0, 0.0), 0.96, upright)
         root(b, t, t + push, place, through=pitch < 200)
         b.turn(t, t + push, 0.0, pitch, 0.0, through=pitch < 200, even=True)
@@ -354,11 +354,11 @@ def hand_flip(b: Score) -> Span:
             lift(b, side, t - 0.05)
             leg(b, side, t - 0.05, t + 1.4 * push, (0.03, -0.82, -0.2), 45.0)
         t += push
-    span = b.vary(0.3, 0.02)
+    span = b.vary(0.34, 0.02)
     far = 0.78 * k
     down = t + span
     under(b, palm[2] + far)
-    b.fly(down, b.world(0.0, who.standing - 0.1 * k, 0.25 * who.ball_ahead - 0.16 * k), 0.0, 345.0, 0.0)
+    b.fly(down, b.world(0.0, who.standing - 0.1 * k, 0.25 * who.ball_ahead - 0.16 * k), 0.0, 337.0, 0.0)
     legs(b, t, t + 0.6 * span, (0.04, -0.78, 0.06), 20.0)
     hands(b, t, down + 0.1, (0.05, 0.85, 0.2))
     unpalm(b, t)
@@ -402,7 +402,7 @@ def cartwheel(b: Score) -> Span:
     tiptoe(b, t + 0.3 * step, t + 0.8 * step, 40.0, other)
     t += step
     first, second = lead + 0.52 * k, lead + 0.95 * k
-    gap = b.vary(0.19, 0.01)
+    gap = b.vary(0.23, 0.012)
     far = (0.45, -0.70, 0.0)
     leg(b, other, t - 0.2 * step, t + 1.2 * gap, far, 45.0)
     palms(b, side, t - 0.05, t + gap, 0.0, first, 0.8 * turned)
@@ -574,7 +574,7 @@ def hand_stand_kicks(b: Score, times: int) -> Span:
     lead = b.hand
     home_feet = {s: b.last(f"{s}_foot").value for s in SIDES}
     for _ in range(times):
-        push, up, fall = b.beat(0.32), b.beat(0.56), b.beat(0.56)
+        push, up, fall = b.beat(0.36), b.beat(0.66), b.beat(0.7)
         root(b, t, t + push, (0.0, 0.6 * k, 0.03 * k), even=False)
         b.turn(t, t + push, 0.0, 82.0, 0.0)
         t += push

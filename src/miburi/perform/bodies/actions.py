@@ -19,7 +19,7 @@ def climb(b: Score) -> Span:
     """Up two steps, a foot on each, and side by side on the upper one."""
     start = b.now
     high = b.vary(0.18, 0.01)
-    steps.walk(b, 2, length=b.vary(0.29, 0.012), rise=(high, high), seconds=0.7, arms=1.1)
+    steps.walk(b, 2, length=b.vary(0.29, 0.012), rise=(high, high), seconds=0.62, arms=1.4)
     return start, b.now
 
 
@@ -27,7 +27,7 @@ def descend(b: Score) -> Span:
     """Down the steps again on the other side, if the floor is high."""
     start, count = b.now, 2
     high = b.floor / count
-    steps.walk(b, count, length=b.vary(0.29, 0.012), rise=(-high, -high), seconds=0.66, arms=1.0)
+    steps.walk(b, count, length=b.vary(0.29, 0.012), rise=(-high, -high), seconds=0.6, arms=1.4)
     return start, b.now
 
 
@@ -58,7 +58,7 @@ def squats(b: Score, times: int) -> Span:
         b.turn(t, t + down, 0.0, 17.0 * share, 0.0)
         b.trunk(t, t + down, 15.0 * share)
         b.look(t, t + down, -18.0 * share)
-        heel = b.vary(11.0, 3.0) * share
+        heel = b.vary(19.0, 4.0) * share
         for side in SIDES:
             toes = b.last(f"{side}_sole").value[0]
             b.move(f"{side}_sole", t + 0.3 * down, t + down, (toes, max(heel, 3.0)))
@@ -104,7 +104,7 @@ def twists(b: Score, times: int) -> Span:
     start = t - 0.15
     way = 1.0 if b.rng.random() < 0.5 else -1.0
     size = b.who.size
-    lean, stoop = float(b.rng.uniform(-2.0, 13.0)), float(b.rng.uniform(0.0, 12.0))
+    lean, stoop = float(b.rng.uniform(4.0, 15.0)), float(b.rng.uniform(4.0, 14.0))
     for number in range(2 * times):
         span = b.beat(0.85) * (0.7 if number == 0 else 1.0)
         b.turn(t, t + span, 24.0 * way * size, 0.0, 0.0)
@@ -114,7 +114,7 @@ def twists(b: Score, times: int) -> Span:
         for side in SIDES:  # the heel that the body turns away from comes up
             toes = b.heading + b.out(side) * (b.who.toe_out + 4.0)
             lifts = b.out(side) * way < 0
-            b.move(f"{side}_sole", t, t + span, (toes + 10.0 * way * lifts, b.vary(13.0, 4.0) if lifts else 0.0))
+            b.move(f"{side}_sole", t, t + span, (toes + 10.0 * way * lifts, b.vary(20.0, 4.0) if lifts else 0.0))
         t += span + 0.04
         way = -way
     end = t
@@ -351,14 +351,14 @@ def swing_legs(b: Score, times: int) -> Span:
             b.move(f"{side}_sole", begin, end, (b.heading + b.out(side) * 5.0, 22.0 - 0.7 * angle))
         if b.rng.random() < 0.4:
             b.look(t, t + span, b.vary(6.0, 6.0), b.vary(0.0, 14.0))
-        rock = 3.0 if number % 2 else -3.0  # the trunk answers the legs
-        b.turn(t, t + span, 0.0 if together else rock, -8.0 + b.vary(rock if together else 0.0, 1.0), 0.0)
+        rock = 6.0 if number % 2 else -6.0  # the trunk answers the legs
+        b.turn(t, t + span, 0.0 if together else 0.5 * rock, -8.0 + b.vary(rock if together else 0.5 * rock, 1.0), 0.0)
         b.trunk(
             t,
             t + span,
-            b.vary(5.0 - (rock if together else 0.0), 1.5),
+            b.vary(5.0 + (rock if together else 0.5 * rock), 1.5),
             b.vary(0.0, 1.5),
-            0.0 if together else -rock,
+            0.0 if together else -0.8 * rock,
         )
         t += span
     b.now = t + 0.05

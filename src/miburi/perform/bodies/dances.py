@@ -33,14 +33,14 @@ def spins(b: Score, times: int) -> Span:
         t += ready
         turns = int(b.rng.integers(1, 3))
         place = b.local(b.last(f"{other}_foot").value)
-        seconds = b.beat(0.62, 0.06)
+        seconds = b.beat(0.76, 0.05)
         b.heading -= sign * 360.0 * turns
         over = t + push + seconds * turns
         b.pelvis(t, t + push, 0.92 * place[0], 0.045 * k, 0.02)
         b.turn(t, over, 0.0, 0.0, 0.0)
         b.trunk(t, t + 2 * push, -1.0, 0.0, -sign * 6.0)
         b.look(t + 0.7 * push, over, 0.0)
-        hands(b, t - 0.05, t + push + 0.4, arms)
+        hands(b, t - 0.05, t + push + 0.55, arms)
         yaw = b.heading + b.out(other) * b.who.toe_out
         was = b.last(f"{other}_sole").value
         b.move(f"{other}_sole", t, t + 0.5 * push, (was[0] - sign * 12.0, 30.0), through=True, even=True)
@@ -72,7 +72,7 @@ def russian(b: Score, times: int) -> Span:
     t = b.now
     start = t
     down = b.beat(0.7)
-    fold = b.way("russian", "folded", "folded", "wide", "ahead")
+    fold = b.way("russian", "folded", "wide", "wide", "ahead")
     arms = {"folded": (-0.34, -0.34, 0.42), "wide": (0.85, 0.0, 0.3), "ahead": (-0.1, -0.1, 0.8)}[fold]
     low = (0.47 * k * b.vary(1.0, 0.03)) - who.standing
     for s in SIDES:
@@ -107,8 +107,9 @@ def russian(b: Score, times: int) -> Span:
         b.pelvis(t + 0.42 * span, t + 0.85 * span, b.out(stay) * 0.035 * k, low - 0.01, -0.06 * k)
         b.turn(t, t + 0.7 * span, -b.out(kick) * b.vary(9.0, 2.0), -4.0 + b.vary(0.0, 2.0), 0.0)
         b.trunk(t, t + 0.7 * span, 12.0, 0.0, b.out(kick) * 8.0)
-        if fold == "wide":
-            hands(b, t, t + 0.5 * span, (arms[0], arms[1] + b.vary(0.05, 0.05), arms[2]))
+        if fold != "folded":  # the arms go with the hops
+            bob = b.vary(0.2, 0.05) if number % 2 else b.vary(-0.22, 0.05)
+            hands(b, t, t + 0.9 * span, (arms[0], arms[1] + bob, arms[2]))
         t += span
         kick = b.other(kick)
     last = b.other(kick)

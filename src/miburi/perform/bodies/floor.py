@@ -18,7 +18,7 @@ def rug_pull(b: Score) -> Span:
     t = b.now
     b.look(t, t + 0.4, 4.0)
     t += b.beat(0.3, 0.3)
-    slip, fall = b.vary(0.26, 0.02), b.vary(0.36, 0.02)
+    slip, fall = b.vary(0.29, 0.015), b.vary(0.40, 0.02)
     seat = -b.vary(0.16, 0.05) * k
     for s in SIDES:
         late = abs(b.vary(0.03, 0.03))

@@ -39,7 +39,7 @@ def punch(b: Score, times: int, side: str = "r") -> Span:
     t += ready + 0.1
     kind = b.way("punch", "straight", "straight", "hook", "upper")
     for _ in range(times):
-        back, out, again = b.beat(0.2), b.beat(0.27), b.beat(0.38)
+        back, out, again = b.beat(0.22), b.beat(0.3), b.beat(0.42)
         if bounce:
             b.pelvis(t, t + 0.8 * back, -0.02 * m, low - 0.02, 0.0)
         high = {"straight": 0.80, "hook": 0.82, "upper": 0.86}[kind] * who.height + b.vary(0.0, 0.05) * k

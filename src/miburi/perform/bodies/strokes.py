@@ -154,7 +154,7 @@ def crawl(b: Score, times: int, back: bool) -> Span:
         if lying:
             for s in SIDES:
                 up = (number + (s == side)) % 2 == 0
-                _kick(b, s, s_t, s_t + step, (0.11 if up else -0.08) * b.vary(1.0, 0.12), back)
+                _kick(b, s, s_t, s_t + step, (0.11 if up else -0.08) * b.vary(0.75 if back else 1.0, 0.1), back)
         elif number % 4 == 3:
             _dip(b, s_t - 3 * step, s_t + step, number // 4, back)
     b.now = end
@@ -193,7 +193,7 @@ def breast(b: Score, times: int) -> Span:
             b.move(f"{s}_hand", t1, t1 + 0.55 * pull, (0.3, 0.2, 0.58), "arm", through=True, exact=True, even=True)
             b.move(f"{s}_hand", t1 + 0.55 * pull, t1 + pull, (-0.16, -0.02, 0.5), "arm", through=True, exact=True, even=True)
             b.move(f"{s}_hand", t1 + pull, t1 + pull + 0.75 * shoot, (-0.1, 0.9, 0.28), "arm", exact=True)
-        rise = -16.0 if lying else 8.0
+        rise = -24.0 if lying else 2.0
         b.trunk(t, t1 + pull, rise)
         b.look(t, t1 + pull, -34.0)
         b.trunk(t1 + pull, t1 + pull + shoot, -2.0 if lying else 22.0)
