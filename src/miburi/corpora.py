@@ -26,15 +26,30 @@ _COMPRESSED = 0.3
 _CMU_SECONDS = 17.0
 
 
-def groups(name: str, corpus: settings.Corpus) -> list[settings.Group]:
-    """The groups of a corpus; a simulated or fetched corpus has one, in data/raw/{corpus}."""
+def groups(name: str, corpus: settings.Corpus, seed: int) -> list[settings.Group]:
+    """The groups of a corpus; those of a simulated or fetched one are in data/raw/{corpus}.
+
+    The simulated bodies are two groups: files that begin with a rest pose are the second one.
+    """
     if corpus.groups:
         return list(corpus.groups)
     folder = f"data/raw/{name}"
     if corpus.perform == "janken":
         return [settings.Group(folder=folder, files=["*.csv"], calibration=f"{folder}/wearer.yaml")]
     if corpus.perform == "everyday":
-        return [settings.Group(folder=folder, files=["*.bvh"], annotations=f"{folder}/annotations.tsv")]
+        from miburi.perform import bodies
+
+        headers = {p.take: p.fps for p in bodies.plan(seed, small=corpus.small) if p.fps != 120.0}
+        return [
+            settings.Group(
+                folder=folder,
+                files=["*.bvh"],
+                annotations=f"{folder}/annotations.tsv",
+                rates=headers,
+                skip_frames=rest,
+            )
+            for rest in (0, 1)
+        ]
     rates = {row["take"]: float(row["fps"]) for row in _cmu(corpus.fetch)}
     return [
         settings.Group(
@@ -83,7 +98,7 @@ def _performed(name: str, corpus: settings.Corpus, seed: int) -> list[Take]:
     from miburi.perform import bodies
 
     return [
-        Take(p.take, p.performer, f"{folder}/{p.take}.bvh", 0, p.seconds)
+        Take(p.take, p.performer, f"{folder}/{p.take}.bvh", int(p.rest), p.seconds)
         for p in bodies.plan(seed, small=corpus.small)
     ]
 

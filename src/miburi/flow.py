@@ -68,7 +68,7 @@ class Flow:
         return {
             name: [
                 {key: _with_recordings(value, folder) for key, value in group.model_dump().items()}
-                for group in corpora.groups(name, corpus)
+                for group in corpora.groups(name, corpus, self.config.seed)
             ]
             for name, corpus in self.config.corpora.items()
         }
@@ -84,6 +84,14 @@ class Flow:
         if self.corpus(corpus).perform == "janken":
             found += [f"{folder}/wearer.yaml", *self.annotation_files(corpus)]
         return found
+
+    def performers(self, corpus: str) -> list[str]:
+        """Who performs in a simulated corpus of bodies."""
+        return sorted({t.subject for t in self.takes[corpus]})
+
+    def performed_by(self, corpus: str, performer: str) -> dict[str, str]:
+        """Takes of a performer and their files."""
+        return {t.name: t.recording for t in self.takes[corpus] if t.subject == performer}
 
     def fetched(self) -> list[tuple[str, str]]:
         """Corpus and subject of everything that is fetched."""

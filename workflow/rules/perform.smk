@@ -28,20 +28,43 @@ for _name in FLOW.performed("everyday"):
         name:
             f"perform_{_name}"
         output:
-            FLOW.performance(_name),
+            f"data/raw/{_name}/annotations.tsv",
         log:
             f"results/logs/perform/{_name}.log",
         benchmark:
             f"results/benchmarks/perform/{_name}.tsv"
         resources:
-            mem_mb=megabytes(1500),
-            runtime=minutes(20),
+            mem_mb=megabytes(500),
+            runtime=minutes(5),
         params:
+            takes=[],
             small=FLOW.corpus(_name).small,
             seed=CONFIG.seed,
             code=code("perform_everyday.py"),
         script:
             "../scripts/perform_everyday.py"
+
+    for _performer in FLOW.performers(_name):
+
+        rule:
+            name:
+                f"perform_{_name}_{_performer}"
+            output:
+                list(FLOW.performed_by(_name, _performer).values()),
+            log:
+                f"results/logs/perform/{_name}/{_performer}.log",
+            benchmark:
+                f"results/benchmarks/perform/{_name}/{_performer}.tsv"
+            resources:
+                mem_mb=megabytes(1000),
+                runtime=minutes(10),
+            params:
+                takes=list(FLOW.performed_by(_name, _performer)),
+                small=FLOW.corpus(_name).small,
+                seed=CONFIG.seed,
+                code=code("perform_everyday.py"),
+            script:
+                "../scripts/perform_everyday.py"
 
 
 for _name, _subject in FLOW.fetched():

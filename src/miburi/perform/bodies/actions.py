@@ -19,7 +19,7 @@ def climb(b: Score) -> Span:
     """Up two steps, a foot on each, and side by side on the upper one."""
     start = b.now
     high = b.vary(0.18, 0.01)
-    steps.walk(b, 2, length=b.vary(0.29, 0.012), rise=(high, high), seconds=0.8, arms=0.6)
+    steps.walk(b, 2, length=b.vary(0.29, 0.012), rise=(high, high), seconds=0.62, arms=1.4)
     return start, b.now
 
 
@@ -27,7 +27,7 @@ def descend(b: Score) -> Span:
     """Down the steps again on the other side, if the floor is high."""
     start, count = b.now, 2
     high = b.floor / count
-    steps.walk(b, count, length=b.vary(0.29, 0.012), rise=(-high, -high), seconds=0.72, arms=0.6)
+    steps.walk(b, count, length=b.vary(0.29, 0.012), rise=(-high, -high), seconds=0.6, arms=1.4)
     return start, b.now
 
 
@@ -58,6 +58,11 @@ def squats(b: Score, times: int) -> Span:
         b.turn(t, t + down, 0.0, 17.0 * share, 0.0)
         b.trunk(t, t + down, 15.0 * share)
         b.look(t, t + down, -18.0 * share)
+        heel = b.vary(19.0, 4.0) * share
+        for side in SIDES:
+            toes = b.last(f"{side}_sole").value[0]
+            b.move(f"{side}_sole", t + 0.3 * down, t + down, (toes, max(heel, 3.0)))
+            b.move(f"{side}_sole", t + down + hold, t + down + hold + 0.7 * up, (toes, 0.0))
         if arms in ("ahead", "swing"):
             for side in SIDES:
                 b.reach(side, t, t + down, (-0.05, 0.3 * share - 0.1, 0.88), arc=0.05)
@@ -99,16 +104,22 @@ def twists(b: Score, times: int) -> Span:
     start = t - 0.15
     way = 1.0 if b.rng.random() < 0.5 else -1.0
     size = b.who.size
-    lean, stoop = float(b.rng.uniform(-2.0, 13.0)), float(b.rng.uniform(0.0, 12.0))
+    lean, stoop = float(b.rng.uniform(4.0, 15.0)), float(b.rng.uniform(4.0, 14.0))
     for number in range(2 * times):
         span = b.beat(0.85) * (0.7 if number == 0 else 1.0)
         b.turn(t, t + span, 24.0 * way * size, 0.0, 0.0)
         b.trunk(t + 0.03, t + span + 0.04, stoop, lean * way, b.vary(40.0, 3.0) * way * size)
         b.look(t + 0.02, t + span + 0.06, 0.0, b.vary(15.0, 4.0) * way)
-        b.pelvis(t, t + span, -0.02 * way, -0.012, 0.0)
+        b.pelvis(t, t + span, -b.vary(0.05, 0.012) * way, -0.02, 0.0)
+        for side in SIDES:  # the heel that the body turns away from comes up
+            toes = b.heading + b.out(side) * (b.who.toe_out + 4.0)
+            lifts = b.out(side) * way < 0
+            b.move(f"{side}_sole", t, t + span, (toes + 10.0 * way * lifts, b.vary(20.0, 4.0) if lifts else 0.0))
         t += span + 0.04
         way = -way
     end = t
+    for side in SIDES:
+        b.move(f"{side}_sole", t, t + 0.4, (b.heading + b.out(side) * b.who.toe_out, 0.0))
     back = b.beat(0.5)
     b.rise(t, t + back)
     b.relax(t, t + 1.1 * back)
@@ -117,10 +128,11 @@ def twists(b: Score, times: int) -> Span:
     return start, end
 
 
-def kick(b: Score, times: int) -> Span:
+def kick(b: Score, times: int, side: str = "") -> Span:
     """A foot swings back and kicks ahead; the arms balance."""
     who, k = b.who, b.who.height / 1.75
-    side, other = b.hand, b.other(b.hand)
+    side = side or b.hand
+    other = b.other(side)
     sign = b.out(side)
     t = b.now
     start = t
@@ -339,14 +351,14 @@ def swing_legs(b: Score, times: int) -> Span:
             b.move(f"{side}_sole", begin, end, (b.heading + b.out(side) * 5.0, 22.0 - 0.7 * angle))
         if b.rng.random() < 0.4:
             b.look(t, t + span, b.vary(6.0, 6.0), b.vary(0.0, 14.0))
-        rock = 3.0 if number % 2 else -3.0  # the trunk answers the legs
-        b.turn(t, t + span, 0.0 if together else rock, -8.0 + b.vary(rock if together else 0.0, 1.0), 0.0)
+        rock = 6.0 if number % 2 else -6.0  # the trunk answers the legs
+        b.turn(t, t + span, 0.0 if together else 0.5 * rock, -8.0 + b.vary(rock if together else 0.5 * rock, 1.0), 0.0)
         b.trunk(
             t,
             t + span,
-            b.vary(5.0 - (rock if together else 0.0), 1.5),
+            b.vary(5.0 + (rock if together else 0.5 * rock), 1.5),
             b.vary(0.0, 1.5),
-            0.0 if together else -rock,
+            0.0 if together else -0.8 * rock,
         )
         t += span
     b.now = t + 0.05

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d
@@ -10,11 +13,12 @@ from scipy.special import expit
 
 from miburi.kinematics import quaternions, unit
 from miburi.motion import Floats, Motion
-from miburi.perform.bodies import people
+from miburi.perform.bodies import flight, people
+from miburi.perform.bodies.curves import RATE, curve, framed, lower, unrest
 from miburi.perform.bodies.people import Person
-from miburi.perform.bodies.score import SIDES, Key, Score
+from miburi.perform.bodies.score import SIDES, Score
 
-FPS = 60.0
+_OVER = 0.014  # of the body's height: what wrists keep from the floor
 REACH = 0.995  # of a leg's length: knees are never locked
 _J = {name: k for k, name in enumerate(people.JOINTS)}
 _LONG = {"l": "Left", "r": "Right"}
@@ -32,7 +36,22 @@ _ELBOWS = (
 
 def _turn(order: str, *degrees: Floats) -> Floats:
     """Matrices (T, 3, 3) of intrinsic turns."""
-    frames: Floats = Rotation.from_euler(order, np.stack(degrees, axis=-1), degrees=True).as_matrix()
+    frames: Floats = _about(order[0], degrees[0])
+    for axis, angle in zip(order[1:], degrees[1:], strict=True):
+        frames = frames @ _about(axis, angle)
+    return frames
+
+
+def _about(axis: str, degrees: Floats) -> Floats:
+    """Matrices (T, 3, 3) of turns about one axis."""
+    angle = np.radians(degrees)
+    c, s = np.cos(angle), np.sin(angle)
+    i = "XYZ".index(axis)
+    j, k = (i + 1) % 3, (i + 2) % 3
+    frames = np.zeros((len(angle), 3, 3))
+    frames[:, i, i] = 1.0
+    frames[:, j, j] = frames[:, k, k] = c
+    frames[:, k, j], frames[:, j, k] = s, -s
     return frames
 
 
@@ -42,98 +61,9 @@ def _apply(frames: Floats, vectors: Floats) -> Floats:
     return turned
 
 
-def _speeds(keys: list[Key]) -> Floats:
-    """Speed at each key: none, or where it is passed through, of the way between its neighbours."""
-    values = np.array([k.value for k in keys])
-    speeds = np.zeros_like(values)
-    for i in range(1, len(keys) - 1):
-        if keys[i].through and keys[i - 1].frame == keys[i].frame == keys[i + 1].frame:
-            speeds[i] = (values[i + 1] - values[i - 1]) / max(keys[i + 1].t - keys[i - 1].t, 1e-3)
-    return speeds
-
-
-def _pass(keys: list[Key], i: int, t: Floats) -> tuple[Floats, Floats, Floats]:
-    """Weights (n, 1) of the next key, of the speed here and of the speed there, on the way from key i.
-
-    The quintic without acceleration at both ends: with speeds of zero the minimum-jerk movement.
-    """
-    span = keys[i + 1].t - keys[i].t
-    u = np.clip((t - keys[i].t) / span, 0.0, 1.0)[:, None]
-    return (
-        u**3 * (10 + u * (6 * u - 15)),
-        span * (u - u**3 * (6 + u * (3 * u - 8))),
-        span * u**3 * (-4 + u * (7 - 3 * u)),
-    )
-
-
-def curve(keys: list[Key], t: Floats) -> Floats:
-    """A track whose keys lie in one frame, at times (T,): (T, D)."""
-    values, speeds = np.array([k.value for k in keys]), _speeds(keys)
-    result = np.repeat(values[-1:], len(t), axis=0)
-    edges = np.searchsorted(t, [k.t for k in keys])
-    result[: edges[0]] = values[0]
-    for i in range(len(keys) - 1):
-        rows = slice(edges[i], edges[i + 1])
-        there, begin, finish = _pass(keys, i, t[rows])
-        result[rows] = (
-            values[i] + there * (values[i + 1] - values[i]) + begin * speeds[i] + finish * speeds[i + 1]
-        )
-    return result
-
-
-def _framed(
-    keys: list[Key], t: Floats, frames: dict[str, tuple[Floats, Floats]], arcs: Floats, mirror: float
-) -> Floats:
-    """A track whose keys lie in frames that move, as places in the world (T, 3).
-
-    `frames` holds origins (T, 3) and axes (T, 3, 3), scaled; `mirror` turns outwards into left; `arcs` is the
-    frame of the ways' bends.
-    """
-
-    def place(k: Key, rows: slice) -> Floats:
-        value = np.array(k.value)
-        if k.frame == "world":
-            return np.repeat(value[None], len(t[rows]), axis=0)
-        origin, axes = frames[k.frame]
-        moving: Floats = origin[rows] + axes[rows] @ (value * [mirror, 1.0, 1.0])
-        return moving
-
-    speeds = _speeds(keys)
-    result = place(keys[-1], slice(0, len(t)))
-    edges = np.searchsorted(t, [k.t for k in keys])
-    for i in range(len(keys) - 1):
-        rows = slice(edges[i], edges[i + 1])
-        there, begin, finish = _pass(keys, i, t[rows])
-        result[rows] = (1 - there) * place(keys[i], rows) + there * place(keys[i + 1], rows)
-        for weight, k in ((begin, i), (finish, i + 1)):
-            if speeds[k].any():
-                axes = frames[keys[k].frame][1][rows] if keys[k].frame != "world" else np.eye(3)
-                result[rows] += weight * (
-                    axes @ (speeds[k] * [1.0 if keys[k].frame == "world" else mirror, 1.0, 1.0])
-                )
-        if any(keys[i + 1].arc):
-            bend = 16 * there**2 * (1 - there) ** 2
-            result[rows] += bend * (arcs[rows] @ (np.array(keys[i + 1].arc) * [mirror, 1.0, 1.0]))
-    return result
-
-
-def _unrest(rng: np.random.Generator, frames: int, width: int, hz: float) -> Floats:
-    """Noise (frames, width) of variance one below a frequency."""
-    sigma = FPS / (2 * np.pi * hz)
-    pad = int(4 * sigma) + 1
-    noise = gaussian_filter1d(rng.standard_normal((frames + 2 * pad, width)), sigma, axis=0, mode="nearest")
-    result: Floats = noise[pad : pad + frames] * np.sqrt(2 * np.sqrt(np.pi) * sigma)
-    return result
-
-
-def _lower(a: Floats, b: Floats, soft: float = 0.006) -> Floats:
-    """The smaller of two, without a corner."""
-    return -soft * np.logaddexp(-a / soft, -b / soft)
-
-
 def _ahead(dip: Floats, seconds: float = 0.1) -> Floats:
     """At least as low as a dip (T,), and in time: the body sinks before its foot lands, not when it does."""
-    reach = round(seconds * FPS)
+    reach = round(seconds * RATE)
     widest = maximum_filter1d(dip, 2 * reach + 1, mode="nearest")
     result: Floats = gaussian_filter1d(widest, 0.4 * reach, radius=reach, mode="nearest")
     return result
@@ -179,10 +109,24 @@ def _bent(a: float, b: float, origin: Floats, target: Floats, onset: float) -> t
     return unit(step), along, np.sqrt(np.maximum(a * a - along * along, 0.0))
 
 
-def _leg(who: Person, hip: Floats, ankle: Floats, across: Floats) -> tuple[Floats, Floats]:
-    """Frames (T, 3, 3) of thigh and shank; `across` is the knee's axis to the left, roughly."""
+def _leg(
+    who: Person, hip: Floats, ankle: Floats, across: Floats, hips: Floats, loose: Floats
+) -> tuple[Floats, Floats]:
+    """Frames (T, 3, 3) of thigh and shank.
+
+    `across` is the knee's axis to the left, roughly; as far as the leg is `loose` (T,), the knee points where the
+    pelvis does once the thigh is swung from hanging to its place without a twist.
+    """
     direction, along, beside = _bent(who.thigh, who.shank, hip, ankle, REACH)
     pole = unit(np.cross(direction, across), (0.0, 0.0, 1.0))
+    rows = np.flatnonzero(loose > 0)
+    if len(rows):
+        d, down, ahead = direction[rows], -hips[rows, :, 1], hips[rows, :, 2]
+        axis = np.cross(down, d)
+        share = 1.0 / np.maximum(1.0 + np.sum(down * d, axis=1, keepdims=True), 0.05)
+        swung = ahead + np.cross(axis, ahead) + share * np.cross(axis, np.cross(axis, ahead))
+        mixed = (1 - loose[rows, None]) * pole[rows] + loose[rows, None] * swung
+        pole[rows] = unit(mixed - np.sum(mixed * d, axis=1, keepdims=True) * d, (0.0, 0.0, 1.0))
     knee = hip + along[:, None] * direction + beside[:, None] * pole
     axis = np.cross(pole, direction)
     thigh_y = unit(hip - knee)
@@ -219,11 +163,11 @@ def _clear(who: Person, chest: tuple[Floats, Floats], hand: Floats) -> Floats:
     origin, axes = chest
     seen = np.einsum("tji,tj->ti", axes, hand - origin)
     h = who.height
-    aside = np.abs(seen[:, 0]) / (0.115 * h)
+    aside = np.abs(seen[:, 0]) / (0.115 * h * who.girth)
     level = np.abs(seen[:, 1] + 0.08 * h) - 0.19 * h
     before = expit((1.0 - aside) / 0.06) * expit(-level / (0.012 * h))
     soft = 0.012 * h
-    deep = 0.088 * h * np.sqrt(np.clip(1 - aside**2, 0.0, 1.0) + 0.02) - seen[:, 2]
+    deep = 0.088 * h * who.girth * np.sqrt(np.clip(1 - aside**2, 0.0, 1.0) + 0.02) - seen[:, 2]
     pushed = soft * np.logaddexp(0.0, deep / soft)
     return hand + _apply(axes, np.stack([np.zeros_like(deep), np.zeros_like(deep), before * pushed], axis=-1))
 
@@ -233,41 +177,102 @@ def _inside(who: Person, chest: tuple[Floats, Floats], place: Floats) -> Floats:
     origin, axes = chest
     seen = np.einsum("tji,tj->ti", axes, place - origin)
     h = who.height
-    r = np.hypot(seen[:, 0] / (0.11 * h), seen[:, 2] / (0.08 * h))
+    r = np.hypot(seen[:, 0] / (0.11 * h * who.girth), seen[:, 2] / (0.08 * h * who.girth))
     level = np.abs(seen[:, 1] + 0.08 * h) - 0.17 * h
     depth: Floats = 0.08 * np.logaddexp(0.0, (1.0 - r) / 0.08) * expit(-level / (0.015 * h))
     return depth
 
 
-def embody(b: Score, rng: np.random.Generator, name: str = "") -> Motion:
+class Body(NamedTuple):
+    """Places of the root (T, 3) and frames of all joints in the world (T, 3, 3)."""
+
+    root: Floats
+    world: dict[str, Floats]
+
+
+Noise = Callable[[int, float], Floats]
+"""(width, hz) → (T, width)"""
+
+
+def _off_floor(
+    who: Person, s: str, shoulder: Floats, hand: Floats, chest: Floats, swivel: Floats
+) -> Floats:
+    """By how much more an elbow is turned about its arm's line to stay above the floor (T,), degrees."""
+    low = 2 * _OVER * who.height
+    rows = np.flatnonzero(np.minimum(shoulder[:, 1], hand[:, 1]) < 0.75 * who.upper_arm)
+    extra = np.zeros(len(swivel))
+    if not len(rows):
+        return extra
+    sign = 1.0 if s == "l" else -1.0
+    tries = np.arange(-180.0, 181.0, 15.0)
+    cost = np.empty((len(tries), len(rows)))
+    for n, more in enumerate(tries):
+        upper, _ = _arm(who, s, shoulder[rows], hand[rows], chest[rows], swivel[rows] + more)
+        high = shoulder[rows, 1] + sign * who.upper_arm * upper[:, 1, 0]
+        cost[n] = np.maximum(low - high, 0.0) / (0.02 * who.height) + (more / 75.0) ** 2
+    weight = np.exp(-3.0 * (cost - cost.min(axis=0)))
+    extra[rows] = (tries[:, None] * weight).sum(axis=0) / weight.sum(axis=0)
+    return _slow(extra)
+
+
+def embody(b: Score, rng: np.random.Generator, name: str = "", fps: float = 2 * RATE) -> Motion:
     """The motion of a score.
 
     Slow unrest goes onto pelvis, trunk, head and free hands; a fifth of a millimetre of jitter, as of a
     marker-based capture, onto what the inverse kinematics follows.
+
+    Parameters
+    ----------
+    fps
+        `RATE` or twice as much.
     """
-    who = b.who
-    n = int(np.ceil(b.now * FPS)) + 1
-    t = np.arange(n) / FPS
-    k = {track: keys for track, keys in b.tracks.items()}
+    n = int(np.ceil(b.now * RATE)) + 1
+    t = np.arange(n) / RATE
+    paths = [flight.path(b, f, lambda at: pose(b, at, lambda w, hz: np.zeros((len(at), w)))) for f in b.flights]
+    body = pose(b, t, lambda width, hz: unrest(rng, n, width, hz), paths)
+    local = np.empty((n, len(people.JOINTS), 4))
+    for j, joint in enumerate(people.JOINTS):
+        p = people.PARENTS[j]
+        frames = body.world[joint]
+        turned = frames if p < 0 else np.swapaxes(body.world[people.JOINTS[p]], 1, 2) @ frames
+        local[:, j] = quaternions(turned)
+    local[1:] *= np.cumprod(np.where((local[1:] * local[:-1]).sum(2, keepdims=True) < 0, -1.0, 1.0), axis=0)
+    skeleton = people.skeleton(b.who)
+    if fps == RATE:
+        return Motion(skeleton, fps, body.root, local, name=name)
+    local = doubled(local)
+    local /= np.linalg.norm(local, axis=2, keepdims=True)
+    return Motion(skeleton, fps, doubled(body.root), local, name=name)
+
+
+def pose(b: Score, t: Floats, noise: Noise, paths: Sequence[flight.Path] = ()) -> Body:
+    """The body at times (T,)."""
+    who, n = b.who, len(t)
+    k = b.tracks
     scale = who.height / 1.75
     sway = who.sway
 
-    pelvis = curve(k["pelvis"], t) + 0.004 * sway * scale * _unrest(rng, n, 3, 0.35) * [1.0, 0.25, 1.0]
-    turn = curve(k["turn"], t) + 0.7 * sway * _unrest(rng, n, 3, 0.4)
-    trunk = curve(k["trunk"], t) + 1.1 * sway * _unrest(rng, n, 3, 0.45)
-    head = curve(k["head"], t) + 1.6 * sway * _unrest(rng, n, 3, 0.5)
-    hips = _turn("YXZ", *turn.T)
+    pelvis, turn = curve(k["pelvis"], t), curve(k["turn"], t)
+    for path in paths:
+        rows = slice(*np.searchsorted(t, [path.start, path.end]))
+        pelvis[rows], turn[rows] = path.at(t[rows])
+    pelvis = pelvis + 0.004 * sway * scale * noise(3, 0.35) * [1.0, 0.25, 1.0]
+    turn = turn + 0.7 * sway * noise(3, 0.4)
+    trunk = curve(k["trunk"], t) + 1.1 * sway * noise(3, 0.45)
+    head = curve(k["head"], t) + 1.6 * sway * noise(3, 0.5)
+    hips = _turn("YXZY", *turn.T, curve(k["spin"], t)[:, 0])
 
-    soles, ankles, free = {}, {}, {}
+    soles, ankles, free, loose = {}, {}, {}, {}
     leg = who.thigh + who.shank
     for s in SIDES:
         sole = curve(k[f"{s}_sole"], t)
         soles[s], ankle = _soles(who, sole[:, 0], sole[:, 1])
         free[s] = 1 - _standing(b.air[s], t)
+        loose[s] = curve(k[f"{s}_ankle"], t)
         sign = b.out(s)
         hip = pelvis + _apply(hips, np.array([sign * 0.052 * who.height * who.hips, -who.hip_drop, 0.0]))
         frames = {"hip": (hip - ankle, hips * scale)}  # keys in the hip's frame are the ankle's places
-        ground = _framed(k[f"{s}_foot"], t, frames, hips, sign)
+        ground = framed(k[f"{s}_foot"], t, frames, hips, sign)
         ankles[s] = ground + ankle
         ankles[s][:, 1] += curve(k[f"{s}_lift"], t)[:, 0]
     limit = np.full(n, 1e3)
@@ -275,14 +280,16 @@ def embody(b: Score, rng: np.random.Generator, name: str = "") -> Motion:
         drop = hips @ np.array([b.out(s) * 0.052 * who.height * who.hips, -who.hip_drop, 0.0])
         level = np.linalg.norm((pelvis + drop - ankles[s])[:, [0, 2]], axis=1)
         height = np.sqrt(np.maximum((REACH * leg) ** 2 - level**2, (0.3 * leg) ** 2))
-        limit = _lower(limit, ankles[s][:, 1] + height - drop[:, 1] + 1.5 * free[s])
-    pelvis[:, 1] -= _ahead(pelvis[:, 1] - _lower(pelvis[:, 1], limit))
+        limit = lower(limit, ankles[s][:, 1] + height - drop[:, 1] + 1.5 * free[s])
+    dip = pelvis[:, 1] - lower(pelvis[:, 1], limit)
+    for flight_ in b.flights:  # legs that are stretched when they leave the ground are drawn after
+        dip[slice(*np.searchsorted(t, [flight_.start - 0.03, flight_.end]))] = 0.0
+    pelvis[:, 1] -= _ahead(dip)
     jitter = 2e-4
-    pelvis = pelvis + (jitter * _unrest(rng, n, 3, 7.0) + 0.0007 * who.tremor * _unrest(rng, n, 3, 2.5))
+    pelvis = pelvis + (jitter * noise(3, 7.0) + 0.0007 * who.tremor * noise(3, 2.5))
 
     world: dict[str, Floats] = {"Hips": hips}
-    skeleton = people.skeleton(who)
-    offsets = skeleton.offsets
+    offsets = people.skeleton(who).offsets
     at: dict[str, Floats] = {"Hips": pelvis}
     for parent, joint, share in (
         ("Hips", "Spine", 0.25),
@@ -303,32 +310,57 @@ def embody(b: Score, rng: np.random.Generator, name: str = "") -> Motion:
     for s in SIDES:
         long, sign = _LONG[s], b.out(s)
         hip = pelvis + _apply(hips, offsets[_J[f"{long}UpLeg"]])
-        ankles[s] = ankles[s] + jitter * _unrest(rng, n, 3, 7.0)
+        ankles[s] = ankles[s] + jitter * noise(3, 7.0)
         # the knee's axis lies between pelvis and foot, so that the knee points over the toes
-        across = unit(0.45 * hips[:, :, 0] + 0.55 * unit(soles[s][:, :, 0]))
-        thigh, shank = _leg(who, hip, ankles[s], across)
+        own = 0.55 * (1 - loose[s][:, :1])
+        across = unit((1 - own) * hips[:, :, 0] + own * unit(soles[s][:, :, 0]))
+        thigh, shank = _leg(who, hip, ankles[s], across, hips, loose[s][:, 0])
+        if loose[s].any():
+            sole = soles[s]
+            for _ in range(2):  # who is in the air does not go through the floor either
+                soles[s] = _between(sole, shank @ _turn("X", loose[s][:, 1]), loose[s][:, 0])
+                tip = ankles[s][:, 1] + _apply(soles[s], np.array(people.tip(who)))[:, 1]
+                ankle = np.minimum(tip, ankles[s][:, 1] - 0.03 * who.height) - 0.002
+                ankles[s][:, 1] += np.minimum(loose[s][:, 0] * 4.0, 1.0) * (-lower(-ankle, 0.0 * ankle, 0.004) - ankle)
+                thigh, shank = _leg(who, hip, ankles[s], across, hips, loose[s][:, 0])
+            soles[s] = _between(sole, shank @ _turn("X", loose[s][:, 1]), loose[s][:, 0])
         knee = hip + _apply(thigh, np.array([0.0, -who.thigh, 0.0]))
         world[f"{long}UpLeg"], world[f"{long}Leg"], world[f"{long}Foot"] = thigh, shank, soles[s]
         pitch = curve(k[f"{s}_sole"], t)[:, 1]
         # toes stay on the ground under a heel that rises, and follow the foot once it is clear of it
         ball = ankles[s][:, 1] + _apply(soles[s], offsets[_J[f"{long}ToeBase"]])[:, 1]
         u = np.clip((ball - people.BALL * who.height) / 0.07, 0.0, 1.0)
-        bend = np.maximum(pitch, 0.0) * (1 - 0.75 * u * u * (3 - 2 * u))
+        bend = np.maximum(pitch, 0.0) * (1 - 0.75 * u * u * (3 - 2 * u)) * (1 - loose[s][:, 0])
         world[f"{long}ToeBase"] = soles[s] @ _turn("X", -bend)
-        _upper(b, s, rng, t, skeleton.offsets, at, world, knee, flat, hip)
+        _upper(b, s, noise, t, offsets, at, world, knee, flat, hip)
+    return Body(pelvis, world)
 
-    local = np.empty((n, len(people.JOINTS), 4))
-    for j, joint in enumerate(people.JOINTS):
-        p = people.PARENTS[j]
-        turned = world[joint] if p < 0 else np.swapaxes(world[people.JOINTS[p]], 1, 2) @ world[joint]
-        local[:, j] = quaternions(turned)
-    return Motion(skeleton, FPS, pelvis, local, name=name)
+
+def _between(a: Floats, b: Floats, share: Floats) -> Floats:
+    """Frames (T, 3, 3) between two, on the shortest way."""
+    rows = np.flatnonzero(share > 0)
+    result = a.copy()
+    if len(rows):
+        step = Rotation.from_matrix(np.swapaxes(a[rows], 1, 2) @ b[rows]).as_rotvec()
+        result[rows] = a[rows] @ Rotation.from_rotvec(step * share[rows, None]).as_matrix()
+    return result
+
+
+def doubled(x: Floats) -> Floats:
+    """Rows (T, …) and what lies half-way between them (2 T − 1, …), by Lagrange's polynomial through six."""
+    pad = np.concatenate([x[:1], x[:1], x, x[-1:], x[-1:]])
+    m = len(x) - 1
+    a, b, c, d, e, f = (pad[i : i + m] for i in range(6))
+    result = np.empty((2 * len(x) - 1, *x.shape[1:]))
+    result[::2] = x
+    result[1::2] = (3 * (a + f) - 25 * (b + e) + 150 * (c + d)) / 256
+    return result
 
 
 def _upper(
     b: Score,
     s: str,
-    rng: np.random.Generator,
+    noise: Noise,
     t: Floats,
     offsets: NDArray[np.float64],
     at: dict[str, Floats],
@@ -338,7 +370,7 @@ def _upper(
     hip: Floats,
 ) -> None:
     """Collar bone, arm and hand of one side."""
-    who, long, sign, n = b.who, _LONG[s], b.out(s), len(t)
+    who, long, sign = b.who, _LONG[s], b.out(s)
     scale = who.height / 1.75
     chest = world["Spine2"]
     girdle = at["Spine2"] + _apply(chest, offsets[_J[f"{long}Shoulder"]])
@@ -349,13 +381,14 @@ def _upper(
         "hip": (hip, world["Hips"] * scale),
         "knee": (knee, flat * scale),
     }
-    hand = _framed(b.tracks[f"{s}_hand"], t, frames, chest, sign)
+    hand = framed(b.tracks[f"{s}_hand"], t, frames, chest, sign)
     hand = (
         hand
-        + (0.006 * who.sway * _unrest(rng, n, 3, 0.6) + 0.0015 * who.tremor * _unrest(rng, n, 3, 3.0)) * scale
+        + (0.006 * who.sway * noise(3, 0.6) + 0.0015 * who.tremor * noise(3, 3.0)) * scale
     )
     middle = at["Spine2"] + _apply(chest, np.array([0.0, -0.01 * who.height, 0.012 * who.height]))
     hand = _clear(who, (middle, chest), hand)
+    hand[:, 1] = -lower(-hand[:, 1], np.full(len(t), -_OVER * who.height), 0.004)
     # the shoulder goes with the hand: up when it is raised, ahead when it reaches
     seen = np.einsum("tji,tj->ti", chest, hand - rest) / who.arm * [sign, 1.0, 1.0]
     u = np.clip(0.5 + 0.55 * seen[:, 1], 0.0, 1.0)
@@ -363,11 +396,33 @@ def _upper(
     ahead = 16.0 * np.tanh(seen[:, 2]) + 10.0 * np.tanh(np.maximum(-seen[:, 0], 0.0))
     collar = chest @ _turn("YZ", -sign * ahead, sign * raised)
     shoulder = girdle + _apply(collar, offsets[_J[f"{long}Arm"]])
-    swivel = curve(b.tracks[f"{s}_swivel"], t)[:, 0] + 4.0 * who.sway * _unrest(rng, n, 1, 0.4)[:, 0]
+    swivel = curve(b.tracks[f"{s}_swivel"], t)[:, 0] + 4.0 * who.sway * noise(1, 0.4)[:, 0]
     upper, fore = _arm(who, s, shoulder, hand, chest, swivel)
     elbow = shoulder + sign * who.upper_arm * upper[:, :, 0]
     swivel = swivel + 55.0 * _inside(who, (middle, chest), elbow)  # elbows go round the trunk
+    swivel = swivel + _off_floor(who, s, shoulder, hand, chest, swivel)
     upper, fore = _arm(who, s, shoulder, hand, chest, swivel)
-    wrist = curve(b.tracks[f"{s}_wrist"], t) + 2.0 * _unrest(rng, n, 3, 0.8)
+    wrist = curve(b.tracks[f"{s}_wrist"], t) + 2.0 * noise(3, 0.8)
     world[f"{long}Shoulder"], world[f"{long}Arm"], world[f"{long}ForeArm"] = collar, upper, fore
-    world[f"{long}Hand"] = fore @ _turn("XYZ", wrist[:, 2], -sign * wrist[:, 1], -sign * wrist[:, 0])
+    flat = curve(b.tracks[f"{s}_palm"], t)
+    free = fore @ _turn("XYZ", wrist[:, 2], -sign * wrist[:, 1], -sign * wrist[:, 0])
+    yaw = np.radians(flat[:, 1])
+    world[f"{long}Hand"] = _between(free, _level(sign * np.sin(yaw), sign * np.cos(yaw)), flat[:, 0])
+    # fingers do not go through the floor
+    own = world[f"{long}Hand"]
+    deep = 0.02 * who.height - (hand[:, 1] + sign * own[:, 1, 0] * people.HAND * who.height * who.arms)
+    u = np.clip(deep / (0.05 * who.height), 0.0, 1.0)
+    world[f"{long}Hand"] = _between(own, _level(*(_slow(own[:, [0, 2], 0]) + 0.6 * sign * np.stack([np.sin(yaw), np.cos(yaw)], axis=1)).T), u * u * (3 - 2 * u))
+
+
+def _slow(x: Floats) -> Floats:
+    """Rows (T, …) without what is quicker than a tenth of a second."""
+    slow: Floats = gaussian_filter1d(x, 0.07 * RATE, axis=0, mode="nearest")
+    return slow
+
+
+def _level(x: Floats, z: Floats) -> Floats:
+    """Frames (T, 3, 3) with the second axis upright and the first as near to (x, ·, z) as that allows."""
+    first = unit(np.stack([x, np.zeros_like(x), z], axis=-1), (1.0, 0.0, 0.0))
+    up = np.broadcast_to([0.0, 1.0, 0.0], first.shape)
+    return np.stack([first, up, np.cross(first, up)], axis=-1)

@@ -39,7 +39,7 @@ def punch(b: Score, times: int, side: str = "r") -> Span:
     t += ready + 0.1
     kind = b.way("punch", "straight", "straight", "hook", "upper")
     for _ in range(times):
-        back, out, again = b.beat(0.16), b.beat(0.23), b.beat(0.34)
+        back, out, again = b.beat(0.22), b.beat(0.3), b.beat(0.42)
         if bounce:
             b.pelvis(t, t + 0.8 * back, -0.02 * m, low - 0.02, 0.0)
         high = {"straight": 0.80, "hook": 0.82, "upper": 0.86}[kind] * who.height + b.vary(0.0, 0.05) * k
@@ -146,8 +146,9 @@ def wash(b: Score, times: int, up_and_down: bool) -> Span:
     return start, t
 
 
-def point(b: Score, times: int) -> Span:
-    """The right arm points: ahead, to the side or up; eyes and trunk go with it."""
+def point(b: Score, times: int, side: str = "r") -> Span:
+    """An arm points: ahead, to the side or up; eyes and trunk go with it."""
+    m = -b.out(side)
     t = b.now
     start = t
     base = b.rng.choice([0.0, -35.0, -70.0, 20.0])
@@ -157,27 +158,27 @@ def point(b: Score, times: int) -> Span:
         a, e = math.radians(azimuth), math.radians(height)
         rise = b.beat(0.55)
         twist = max(-25.0, min(12.0, 0.3 * azimuth))
-        b.look(t - 0.1, t + 0.7 * rise, -0.5 * height, 0.6 * azimuth - twist)
-        b.trunk(t, t + rise, 1.0, 0.0, twist)
-        b.turn(t, t + rise, 0.2 * azimuth, 0.0, 0.0)
-        b.pelvis(t, t + rise, -0.015, 0.0, 0.012)
+        b.look(t - 0.1, t + 0.7 * rise, -0.5 * height, m * (0.6 * azimuth - twist))
+        b.trunk(t, t + rise, 1.0, 0.0, m * twist)
+        b.turn(t, t + rise, m * 0.2 * azimuth, 0.0, 0.0)
+        b.pelvis(t, t + rise, -0.015 * m, 0.0, 0.012)
         a -= math.radians(twist + 0.2 * azimuth)
         value = (-math.sin(a) * math.cos(e) * 0.97, math.sin(e) * 0.97, math.cos(a) * math.cos(e) * 0.97)
-        b.reach("r", t, t + rise, value, arc=0.08)
-        b.move("r_wrist", t, t + rise, (-4.0, 4.0, 10.0))
+        b.reach(side, t, t + rise, value, arc=0.08)
+        b.move(f"{side}_wrist", t, t + rise, (-4.0, 4.0, 10.0))
         t += rise
         hold = b.beat(0.55, 0.3)
         if b.rng.random() < 0.5:  # a little beat for emphasis
-            b.reach("r", t, t + 0.4 * hold, (value[0] * 0.9, value[1] - 0.05, value[2] * 0.92), arc=0.0)
-            b.reach("r", t + 0.4 * hold, t + 0.8 * hold, value, arc=0.0)
+            b.reach(side, t, t + 0.4 * hold, (value[0] * 0.9, value[1] - 0.05, value[2] * 0.92), arc=0.0)
+            b.reach(side, t + 0.4 * hold, t + 0.8 * hold, value, arc=0.0)
         t += hold
         if number + 1 < times and b.rng.random() < 0.5:
             continue
         down = b.beat(0.65)
-        b.relax(t, t + down, "r")
+        b.relax(t, t + down, side)
         b.rise(t, t + down)
         t += down + abs(b.vary(0.05, 0.1))
-    b.relax(t, t + 0.5, "r")
+    b.relax(t, t + 0.5, side)
     b.rise(t, t + 0.5)
     b.now = t + 0.1
     return start, t

@@ -18,24 +18,42 @@ import numpy as np
 from miburi.perform.bodies.people import Person
 
 SIDES = ("l", "r")
+GRAVITY = 9.81
 Vector = tuple[float, ...]
 _OWN_WAY = 0.6  # of the times that there are several ways
 
 
 class Key(NamedTuple):
-    """A value that a track has at a time. `arc` bends the way to it: metres, in the frame of the trunk."""
+    """A value that a track has at a time.
+
+    `arc` bends the way to it: metres, in the frame of the trunk. A key that is passed `through` and `even` lies on
+    a smooth curve of several; `speed` and `bend` (acceleration) are given where physics knows them.
+    """
 
     t: float
     value: Vector
     frame: str = "world"
     through: bool = False
     arc: Vector = (0.0, 0.0, 0.0)
+    even: bool = False
+    speed: Vector | None = None
+    bend: Vector | None = None
+
+
+class Flight(NamedTuple):
+    """The body is in the air from one time to another, seconds; `turn` and `pelvis` have keys at both."""
+
+    start: float
+    end: float
 
 
 REST: dict[str, Vector] = {
     "turn": (0.0, 0.0, 0.0),  # pelvis: yaw, pitch, roll, degrees (yaw against the heading)
     "trunk": (0.0, 0.0, 0.0),  # chest against pelvis: pitch, roll, twist
     "head": (0.0, 0.0, 0.0),  # head against chest: pitch, roll, yaw
+    "spin": (0.0,),  # pelvis about its own long axis, to the left
+    "ankle": (0.0, 0.0),  # how far the foot follows its shank rather than the ground; sole against the shank
+    "palm": (0.0, 0.0),  # how far the hand lies flat on the floor; where its fingers point, degrees
     "swivel": (0.0,),  # elbow about the line from shoulder to wrist, outwards
     "wrist": (0.0, 0.0, 0.0),  # flexion, towards the thumb, roll
 }
@@ -61,20 +79,25 @@ class Score:
     tracks: dict[str, list[Key]] = field(default_factory=dict)
     home_feet: dict[str, Vector] = field(default_factory=dict)
     air: dict[str, list[tuple[float, float]]] = field(default_factory=lambda: {"l": [], "r": []})
+    flights: list[Flight] = field(default_factory=list)
+    revolved: list[float] = field(default_factory=lambda: [0.0, 0.0])  # pitch and roll of somersaults so far
 
     def __post_init__(self) -> None:
         who = self.who
         self.tracks["pelvis"] = [Key(0.0, self.world(0.0, who.standing, 0.25 * who.ball_ahead))]
         self.tracks["turn"] = [Key(0.0, (self.heading, self.rest_pitch, 0.0))]
+        self.tracks["spin"] = [Key(0.0, (0.0,))]
         self.tracks["trunk"] = [Key(0.0, self.trunk_rest)]
         self.tracks["head"] = [Key(0.0, self.head_rest)]
         for side in SIDES:
             self.tracks[f"{side}_hand"] = [Key(0.0, self.hand_rest, "arm")]
             self.tracks[f"{side}_swivel"] = [Key(0.0, (0.0,))]
+            self.tracks[f"{side}_palm"] = [Key(0.0, (0.0, self.heading))]
             self.tracks[f"{side}_wrist"] = [Key(0.0, (8.0, 0.0, 0.0))]
             self.tracks[f"{side}_foot"] = [Key(0.0, self.world(*self.stance(side)))]
             self.tracks[f"{side}_sole"] = [Key(0.0, (self.heading + self.out(side) * who.toe_out, 0.0))]
             self.tracks[f"{side}_lift"] = [Key(0.0, (0.0,))]
+            self.tracks[f"{side}_ankle"] = [Key(0.0, (0.0, 0.0))]
 
     # --- the performer's own frame -------------------------------------------------------------------
 
@@ -169,6 +192,7 @@ class Score:
         through: bool = False,
         arc: Vector = (0.0, 0.0, 0.0),
         exact: bool = False,
+        even: bool = False,
     ) -> None:
         """Go to a value between two times; until then the track stays where it is.
 
@@ -186,17 +210,34 @@ class Score:
         keys = self.tracks[track]
         before = keys[-1]
         if before.t < start and not (before.through and start - before.t < 1e-6):
-            keys[-1] = before._replace(through=False)
-            keys.append(before._replace(t=start, through=False, arc=(0.0, 0.0, 0.0)))
+            rest = before._replace(through=False, speed=None, bend=None)
+            keys[-1] = before if before.speed is not None else rest
+            keys.append(rest._replace(t=start, arc=(0.0, 0.0, 0.0)))
         # who is late starts late, and does not hurry much
         end = max(end, keys[-1].t + (1.0 if exact else 0.8) * span)
-        keys.append(Key(end, value, frame, through, arc))
+        keys.append(Key(end, value, frame, through, arc, even))
 
     def turn(
-        self, start: float, end: float, yaw: float, pitch: float, roll: float, *, through: bool = False
+        self,
+        start: float,
+        end: float,
+        yaw: float,
+        pitch: float,
+        roll: float,
+        *,
+        through: bool = False,
+        even: bool = False,
     ) -> None:
         """Turn the pelvis: degrees against the heading; pitch on top of the posture's own."""
-        self.move("turn", start, end, (self.heading + yaw, self.rest_pitch + pitch, roll), through=through)
+        pitch += self.rest_pitch + self.revolved[0]
+        self.move(
+            "turn",
+            start,
+            end,
+            (self.heading + yaw, pitch, roll + self.revolved[1]),
+            through=through,
+            even=even,
+        )
 
     def trunk(
         self,
@@ -216,12 +257,49 @@ class Score:
         self.move("head", start, end, (self.head_rest[0] + pitch, roll, yaw))
 
     def pelvis(
-        self, start: float, end: float, left: float, rise: float, ahead: float, *, through: bool = False
+        self,
+        start: float,
+        end: float,
+        left: float,
+        rise: float,
+        ahead: float,
+        *,
+        through: bool = False,
+        even: bool = False,
     ) -> None:
         """Move the root: metres, against where it is when the performer stands at ease."""
         who = self.who
         place = self.world(left, who.standing + rise, 0.25 * who.ball_ahead + ahead)
-        self.move("pelvis", start, end, place, through=through)
+        self.move("pelvis", start, end, place, through=through, even=even)
+
+    def fly(self, end: float, place: Vector, yaw: float, pitch: float, roll: float) -> None:
+        """Leave the ground now, where the tracks of the pelvis and its turn have their last keys, and come down.
+
+        Parameters
+        ----------
+        place
+            Where the root is then, in the world, metres.
+        yaw, pitch, roll
+            As in `turn`.
+        """
+        start = self.last("pelvis").t
+        span = end - start
+        whole, gravity = self.last("pelvis"), (0.0, -GRAVITY, 0.0)
+        even = [(b - a) / span for a, b in zip(whole.value, place, strict=True)]
+        up, down = (
+            (even[0], even[1] + sign * 0.5 * GRAVITY * span, even[2]) for sign in (1.0, -1.0)
+        )
+        self.tracks["pelvis"][-1] = whole._replace(speed=up, bend=gravity)
+        self.tracks["pelvis"].append(Key(end, place, speed=down, bend=gravity))
+        was = self.last("turn")
+        if was.t < start:
+            self.tracks["turn"].append(was._replace(t=start))
+        was = self.last("turn")
+        turned = (self.heading + yaw, pitch + self.rest_pitch + self.revolved[0], roll + self.revolved[1])
+        rate = tuple((b - a) / span for a, b in zip(was.value, turned, strict=True))
+        self.tracks["turn"][-1] = was._replace(t=start, speed=rate)
+        self.tracks["turn"].append(Key(end, turned, speed=rate))
+        self.flights.append(Flight(start, end))
 
     def reach(
         self,

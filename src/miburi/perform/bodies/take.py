@@ -10,10 +10,11 @@ import numpy as np
 
 from miburi import formats, store
 from miburi.errors import InputError
-from miburi.formats.annotations import Annotation, write_annotations
+from miburi.formats.annotations import Annotation
 from miburi.motion import Motion
-from miburi.perform.bodies import actions, extras, gestures, steps
-from miburi.perform.bodies.body import FPS, embody
+from miburi.perform.bodies import acrobatics, actions, dances, extras, floor, gestures, others, steps, strokes
+from miburi.perform.bodies.body import embody
+from miburi.perform.bodies.curves import RATE
 from miburi.perform.bodies.people import person
 from miburi.perform.bodies.programme import KEYWORDS, REPETITIONS, Clip, Plan, plan
 from miburi.perform.bodies.score import Score
@@ -53,6 +54,23 @@ def _chin(b: Score, times: int) -> Done:
     return _seated(b, keyword, lambda: actions.chin_seated(b), b.vary(0.27, 0.01), "knee")
 
 
+def _rug(b: Score, times: int) -> Done:
+    fall = ("rug pull fall", *floor.rug_pull(b))
+    return [fall, ("get up", *floor.get_up(b))]
+
+
+def _lie(b: Score, times: int) -> Done:
+    lie = ("lie down", *floor.lie_down(b))
+    return [lie, ("get up", *floor.get_up(b))]
+
+
+def _chair(b: Score, times: int) -> Done:
+    actions.keep_feet(b)
+    done = [("sit down", *actions.sit(b, float(b.rng.uniform(0.25, 0.28)), hands=b.way("chair", "knee", "edge")))]
+    actions.idle(b, b.beat(1.5, 0.5))
+    return [*done, ("stand up", *actions.stand_up(b))]
+
+
 MOTIONS: Mapping[str, Callable[[Score, int], Done]] = {
     "right punch": _single("right punch", gestures.punch),
     "squats": _single("squats", actions.squats),
@@ -65,6 +83,21 @@ MOTIONS: Mapping[str, Callable[[Score, int], Done]] = {
     "sit and swing legs": _swing,
     "hand on chin": _chin,
     "drink soda": _single("drink soda", gestures.drink),
+    "hand stand kicks": _single("hand stand kicks", acrobatics.hand_stand_kicks),
+    "backflip": _single("backflip", lambda b, n: acrobatics.backflip(b)),
+    "cartwheel": _single("cartwheel", lambda b, n: acrobatics.cartwheel(b)),
+    "spins": _single("spins", dances.spins),
+    "handstands": _single("handstands", lambda b, n: acrobatics.handstand(b)),
+    "somersault": _single("somersault", lambda b, n: floor.somersault(b)),
+    "jump kick": _single("jump kick", lambda b, n: acrobatics.jump_kick(b)),
+    "front hand flip": _single("front hand flip", lambda b, n: acrobatics.hand_flip(b)),
+    "rug pull fall": _rug,
+    "Russian dance": _single("Russian dance", dances.russian),
+    "breast stroke": _single("breast stroke", strokes.breast),
+    "free style": _single("free style", lambda b, n: strokes.crawl(b, n, False)),
+    "back stroke": _single("back stroke", lambda b, n: strokes.crawl(b, n, True)),
+    "fly style": _single("fly style", strokes.fly),
+    "lie down": _lie,
     "walk": _single("walk", actions.walk),
     "wave": _single("wave", gestures.wave),
     "throw": _single("throw", lambda b, n: gestures.throw(b)),
@@ -79,6 +112,19 @@ MOTIONS: Mapping[str, Callable[[Score, int], Done]] = {
     "mop floor": _single("mop floor", extras.mop),
     "jumping jacks": _single("jumping jacks", extras.jacks),
     "stretch": _single("stretch", extras.stretch),
+    "run": _single("run", others.run),
+    "turn": _single("turn", others.turn),
+    "catch": _single("catch", others.catch),
+    "look around": _single("look around", others.look_around),
+    "wave both arms": _single("wave both arms", others.wave_both),
+    "arm circles": _single("arm circles", others.arm_circles),
+    "side bend": _single("side bend", others.side_bend),
+    "lunge": _single("lunge", others.lunge),
+    "knee raise": _single("knee raise", others.knee_raise),
+    "jump": _single("jump", others.jump),
+    "toe touch": _single("toe touch", others.toe_touch),
+    "point by left hand": _single("point by left hand", lambda b, n: gestures.point(b, n, "l")),
+    "sit on chair": _chair,
 }
 """Keyword → what adds it to a score: (score, repetitions) → [(keyword, start, end) …]."""
 
@@ -124,19 +170,37 @@ def perform(entry: Plan, seed: int) -> tuple[Motion, list[Annotation]]:
     Returns
     -------
     motion
-        60 frames/s, metres.
+        Metres, at the take's true rate, without its rest pose.
     annotations
-        In the order of time; `performer` and `repetitions` as further columns, `recording` says "simulated".
+        As `annotations` gives them.
     """
     b, done = compose(entry, seed)
-    motion = embody(b, store.seed(seed, "everyday", entry.take, "unrest"), entry.take)
+    motion = embody(b, store.seed(seed, "everyday", entry.take, "unrest"), entry.take, entry.fps)
+    return motion, _rows(entry, b, done)
+
+
+def annotations(entries: Iterable[Plan], seed: int) -> list[Annotation]:
+    """What is done when, of some takes.
+
+    Returns
+    -------
+    list
+        In the order of the takes and of time; seconds of the true rate, from the first frame after a rest pose.
+        Further columns: `performer`, and `recording`, which says "simulated".
+    """
+    rows: list[Annotation] = []
+    for entry in entries:
+        rows += _rows(entry, *compose(entry, seed))
+    return rows
+
+
+def _rows(entry: Plan, b: Score, done: Done) -> list[Annotation]:
     more = {"performer": entry.performer, "recording": "simulated"}
-    last = (len(motion) - 1) / FPS
-    rows = [
+    last = np.ceil(b.now * RATE) / RATE
+    return [
         Annotation(entry.take, round(start, 3), round(min(end, last), 3), keyword, more)
         for keyword, start, end in done
     ]
-    return motion, rows
 
 
 def imagine(keyword: str, performer_seed: int | str) -> Motion:
@@ -155,17 +219,18 @@ def imagine(keyword: str, performer_seed: int | str) -> Motion:
     low, high = REPETITIONS.get(keyword, (1, 1))
     clip = Clip(keyword, int(rng.integers(low, high + 1)), int(rng.integers(2**31)))
     name = f"imagined_{performer_seed}"
-    entry = Plan(f"{name}_{keyword.replace(' ', '_')}", name, 0.0, (keyword,), (clip,))
+    entry = Plan(f"{name}_{keyword.replace(' ', '_')}", name, 0.0, (keyword,), (clip,), 120.0, False)
     b, done = compose(entry, 0)
     motion = embody(b, store.seed(performer_seed, "imagine", keyword, "unrest"), entry.take)
     start, end = next((s, e) for k, s, e in done if k == keyword)
-    return motion[int(np.floor(start * FPS)) : int(np.ceil(end * FPS)) + 1]
+    return motion[int(np.floor(start * motion.fps)) : int(np.ceil(end * motion.fps)) + 1]
 
 
-def write(
-    folder: str | os.PathLike[str], seed: int, takes: Iterable[str] | None = None, small: bool = False
-) -> list[Annotation]:
-    """Perform and write `{take}.bvh`, and `annotations.tsv` of all that was written.
+def write(folder: str | os.PathLike[str], seed: int, takes: Iterable[str] | None = None, small: bool = False) -> None:
+    """Perform and write `{take}.bvh`.
+
+    As in the CMU database, the header of every file says 120 frames/s, also where every second frame only was
+    kept, and some files begin with a rest pose.
 
     Parameters
     ----------
@@ -182,13 +247,13 @@ def write(
     for name in names:
         if name not in entries:
             raise InputError(f"take {name!r} is not in the corpus; it has {', '.join(entries)}")
-    rows: list[Annotation] = []
     for name in names:
-        motion, annotations = perform(entries[name], seed)
-        formats.write(Path(folder) / f"{name}.bvh", motion)
-        rows += annotations
-    write_annotations(Path(folder) / "annotations.tsv", rows)
-    return rows
+        motion, _ = perform(entries[name], seed)
+        root, rotations = motion.root, motion.rotations
+        if entries[name].rest:
+            root = np.concatenate([root[:1], root])
+            rotations = np.concatenate([np.tile([0.0, 0.0, 0.0, 1.0], (1, rotations.shape[1], 1)), rotations])
+        formats.write(Path(folder) / f"{name}.bvh", Motion(motion.skeleton, 120.0, root, rotations, name=name))
 
 
-__all__ = ["KEYWORDS", "MOTIONS", "compose", "imagine", "perform", "write"]
+__all__ = ["KEYWORDS", "MOTIONS", "annotations", "compose", "imagine", "perform", "write"]
