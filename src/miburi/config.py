@@ -129,12 +129,20 @@ class Segmentation(Model):
     """PPCA segmentation (Barbič et al. 2004)."""
 
     variance: float = Field(
-        0.95, gt=0, lt=1, description="Share of the variance that the subspace keeps (τ)."
+        0.9, gt=0, lt=1, description="Share of the variance that the subspace keeps (τ)."
     )
     window_s: float = Field(1.5, gt=0, description="Length of the first window, seconds.")
     ahead_s: float = Field(1.25, gt=0, description="Length of the look-ahead, seconds.")
-    step_s: float = Field(1 / 12, gt=0, description="Step of the window, seconds.")
-    rise: float = Field(5.0, gt=1, description="A peak that is so many times its valley makes a cut (R).")
+    step_s: float = Field(1 / 6, gt=0, description="Step of the window, seconds.")
+    rise: float = Field(4.0, gt=1, description="A peak that is so many times its valley makes a cut (R).")
+    near_s: float = Field(
+        2 / 3, ge=0, description="Cuts found forwards and backwards that are nearer than this are one, seconds."
+    )
+    differ: float = Field(
+        4.5,
+        ge=0,
+        description="A cut is kept where one model explains its two sides worse than two do by this much (twice the log-likelihood ratio for each frame).",
+    )
     shortest_s: float = Field(0.5, ge=0, description="Shorter pieces are joined to a neighbour, seconds.")
 
 

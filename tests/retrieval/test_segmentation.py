@@ -5,12 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
+from scipy.stats import multivariate_normal
 
 from miburi.errors import InputError
 from miburi.figures import PERSON
 from miburi.motion import Motion, Skeleton
 from miburi.retrieval import pieces, ppca_curve, segment
-from miburi.retrieval.segmentation import _NOISE, _next_cut, pose
+from miburi.retrieval.segmentation import _ALIKE, _NOISE, _curve, _grouped, difference, pose
 
 
 def performing(parts, fps=60.0, yaw=0.0, seed=0, seconds=5.0):
@@ -33,6 +34,7 @@ def performing(parts, fps=60.0, yaw=0.0, seed=0, seconds=5.0):
 
 
 ARMS, LEGS, LEFT = ("l_shoulder", "r_elbow"), ("l_hip", "r_hip", "r_knee"), ("l_shoulder", "l_elbow", "l_hip")
+RIGHT = ("r_shoulder", "r_elbow", "r_knee")
 
 
 def naive_curve(x, start, window, ahead, step, variance):
@@ -64,25 +66,69 @@ def test_the_curve_is_the_mahalanobis_distance_of_the_growing_model(start, step)
 
 
 def test_simulated_changes_are_found():
-    motion = performing([ARMS, LEGS, LEFT, ARMS])
+    motion = performing([ARMS, LEGS, LEFT, RIGHT])
     cuts = segment(motion)
     assert cuts.dtype == np.int64
     np.testing.assert_allclose(cuts / 60, [5, 10, 15], atol=0.5)
 
 
-@pytest.mark.parametrize(
-    ("curve", "cut"),
-    [
-        ([9, 4, 2, 5, 11, 12, 9, 8, 7], 50),  # valley 2, peak 12 at frame 50, passed by nothing for 30 frames
-        ([9, 4, 2, 5, 11, 10, 12, 9, 8, 7], 60),  # a notch before the peak
-        ([9, 4, 2, 5, 9, 8, 2, 3], None),  # never five times the valley
-        ([9, 4, 2, 5, 11, 12], None),  # the take ends while the curve still rises
-        ([9, 4, 2, 5, 11, 12, 11], 50),  # the take ends, but the curve has turned down
-        ([], None),
-    ],
-)
-def test_a_cut_is_a_peak_high_above_the_valley_before_it(curve, cut):
-    assert _next_cut(iter([(10 * i, h) for i, h in enumerate(curve)]), rise=5.0, hold=30) == cut
+def naive_cut(curve, rise, hold):
+    """The first peak `rise` times the valley before it that nothing passes within `hold` frames."""
+    valley, where = np.inf, None
+    for i, (frame, h) in enumerate(curve):
+        if where is None:
+            valley = min(valley, h)
+            where = i if h > rise * valley else None
+        elif h > curve[where][1]:
+            where = i
+        elif frame - curve[where][0] >= hold:
+            return curve[where][0]
+    return curve[where][0] if where is not None and curve[-1][1] < curve[where][1] else -1
+
+
+@given(st.integers(0, 1000), st.floats(1.05, 6.0), st.integers(1, 40))
+def test_a_cut_is_a_peak_high_above_the_valley_before_it(seed, rise, hold):
+    rng = np.random.default_rng(seed)
+    x = np.cumsum(rng.normal(size=(260, 3)), axis=0) * rng.uniform(0.01, 1.0, 3)
+    frames, h, cut = _curve(x, 0, 30, 20, 4, 0.9, rise, hold)
+    whole = list(zip(*ppca_curve(x, window=30, ahead=20, step=4), strict=True))
+    assert cut == naive_cut(whole, rise, hold)
+    np.testing.assert_array_equal(h, [v for _, v in whole[: len(h)]])
+
+
+def naive_surprise(x, variance=0.95):
+    """−2 log-likelihood of frames under their own PPCA, by scipy's density; without the constant."""
+    values, vectors = np.linalg.eigh(np.cov(x.T, bias=True) + _ALIKE * np.eye(x.shape[1]))
+    r = 1
+    while values[-r:].sum() < variance * values.sum():
+        r += 1
+    values[:-r] = values[:-r].mean() if r < len(values) else values[:-r]
+    density = multivariate_normal(x.mean(axis=0), vectors * values @ vectors.T)
+    return -2 * density.logpdf(x).sum() - x.size * np.log(2 * np.pi)
+
+
+@given(st.integers(0, 1000), st.integers(2, 5))
+def test_the_difference_is_a_likelihood_ratio(seed, width):
+    rng = np.random.default_rng(seed)
+    x = np.concatenate([rng.normal(size=(40, width)) @ rng.normal(size=(width, width)) for _ in range(2)])
+    want = (naive_surprise(x) - naive_surprise(x[:40]) - naive_surprise(x[40:])) / 80
+    assert difference(x, 0, 40, 80) == pytest.approx(want, rel=1e-6, abs=1e-9)
+
+
+def test_one_motion_differs_little_from_itself_and_much_from_another():
+    x = pose(performing([ARMS, LEGS]))
+    assert difference(x, 60, 300, 540) > 5 * difference(x, 30, 150, 270)
+
+
+def test_cuts_that_are_near_are_one_at_their_mean():
+    assert _grouped([50, 10, 12, 17, 30], 8) == [13, 30, 50]
+    assert _grouped([], 8) == []
+
+
+def test_backwards_finds_the_simple_motion_after_the_rich_one():
+    # swinging one arm stays inside what swinging both arms and the legs has shown
+    motion = performing([(*ARMS, *LEGS), ARMS[:1]], seconds=6)
+    np.testing.assert_allclose(segment(motion) / 60, [6], atol=0.5)
 
 
 def test_one_motion_is_one_piece():
@@ -132,6 +178,9 @@ def test_the_pca_variant_finds_a_simulated_change():
         {"window_s": 0},
         {"ahead_s": -1},
         {"step_s": 0},
+        {"near_s": -1},
+        {"differ": -1},
+        {"differ": float("nan")},
         {"method": "SVD"},
     ],
 )

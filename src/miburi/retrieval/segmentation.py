@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Literal
 
+import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
@@ -18,6 +19,13 @@ from miburi.motion import Floats, Motion
 # Variance of a quaternion component below which nothing counts as motion: (0.016)² is about two degrees.
 # Without it a person who stands still is a model that every later frame leaves at once.
 _NOISE = 2.5e-4
+# The same where two neighbouring pieces are compared: poses within about seven degrees are alike.
+_ALIKE = 4e-3
+# Frames per second that are looked at: motions differ in what is slower than this shows.
+_RATE = 30.0
+# Seconds on either side of a cut in which neighbours are compared, and the share of the variance that their
+# subspaces keep.
+_BESIDE, _BESIDE_VARIANCE = 3.0, 0.95
 
 Cuts = NDArray[np.int64]
 
@@ -73,8 +81,83 @@ def _tilt(turn: Rotation) -> Floats:
     return tilt
 
 
+def _main_axes(x: Floats) -> Floats:
+    """Poses about their mean, along the principal axes in which they vary by more than half the noise."""
+    centred = x - x.mean(axis=0)
+    values, vectors = np.linalg.eigh(centred.T @ centred / len(x))
+    kept = values > _NOISE / 2
+    kept[-1] = True
+    return np.ascontiguousarray(centred @ vectors[:, kept][:, ::-1])
+
+
+@numba.njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
+def _model(added: Floats, squares: Floats, n: int, noise: float, variance: float) -> tuple[Floats, Floats]:
+    """PPCA of n frames by their sum and sum of outer products: variances, ascending, along their axes."""
+    mean = added / n
+    values, vectors = np.linalg.eigh(squares / n - np.outer(mean, mean))
+    values = np.maximum(values, 0.0) + noise
+    most = variance * values.sum()
+    kept, share = 0, 0.0
+    while kept < len(values) and (kept == 0 or share < most):
+        kept += 1
+        share += values[len(values) - kept]
+    left = len(values) - kept
+    if left > 0:
+        # what the subspace leaves out counts as noise of equal size in all its directions
+        values[:left] = values[:left].mean()
+    return values, vectors
+
+
+@numba.njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
+def _distance(
+    values: Floats, vectors: Floats, mean: Floats, added: Floats, squares: Floats, n: int
+) -> float:
+    """Mean squared Mahalanobis distance of n frames, given as sums, from a model."""
+    shift = np.outer(added / n, mean)
+    along = (squares / n - shift - shift.T + np.outer(mean, mean)) @ vectors
+    h = 0.0
+    for i in range(len(values)):
+        h += (vectors[:, i] * along[:, i]).sum() / values[i]
+    return h
+
+
+@numba.njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
+def _curve(
+    x: Floats, start: int, window: int, ahead: int, step: int, variance: float, rise: float, hold: int
+) -> tuple[Cuts, Floats, int]:
+    """Values of `ppca_curve` and the first cut, −1 for none: a peak `rise` times as high as the valley before
+    it that is not passed within `hold` frames. Nothing beyond the cut is looked at; `rise` 0: no cut."""
+    room = max(0, (len(x) - ahead - start - window) // step + 1)
+    frames, curve = np.empty(room, np.int64), np.empty(room)
+    end, count = start + window, 0
+    if room == 0:
+        return frames, curve, -1
+    added, squares = x[start:end].sum(axis=0), x[start:end].T @ x[start:end]
+    valley, peak, where = np.inf, 0.0, -1
+    while end + ahead <= len(x):
+        values, vectors = _model(added, squares, end - start, _NOISE, variance)
+        seen = x[end : end + ahead]
+        h = _distance(values, vectors, added / (end - start), seen.sum(axis=0), seen.T @ seen, ahead)
+        frames[count], curve[count] = end, h
+        count += 1
+        if where < 0:
+            valley = min(valley, h)
+            if rise > 0.0 and h > rise * valley:
+                where, peak = end, h
+        elif h > peak:
+            where, peak = end, h
+        elif end - where >= hold:
+            return frames[:count], curve[:count], where
+        new = x[end : end + step]
+        added += new.sum(axis=0)
+        squares += new.T @ new
+        end += step
+    # where the take ends soon, a curve that has turned down has had its peak
+    return frames[:count], curve[:count], where if where >= 0 and curve[count - 1] < peak else -1
+
+
 def ppca_curve(
-    x: ArrayLike, *, window: int, ahead: int, step: int, variance: float = 0.95, start: int = 0
+    x: ArrayLike, *, window: int, ahead: int, step: int, variance: float = 0.9, start: int = 0
 ) -> tuple[Cuts, Floats]:
     """How far the frames ahead are from a growing model of the frames since `start`.
 
@@ -96,61 +179,99 @@ def ppca_curve(
     distance : (N,) float64
         H, the mean squared Mahalanobis distance of the frames ahead (Barbič et al. 2004, section 3.2).
     """
-    poses = np.asarray(x, dtype=np.float64)
-    curve = list(_growing(poses, start, window, ahead, step, variance))
-    return np.array([k for k, _ in curve], dtype=np.int64), np.array([h for _, h in curve])
+    poses = np.ascontiguousarray(x, dtype=np.float64)
+    frames, curve, _ = _curve(poses, start, window, ahead, step, variance, 0.0, 0)
+    return frames, curve
 
 
-def _growing(
-    x: Floats, start: int, window: int, ahead: int, step: int, variance: float
-) -> Iterator[tuple[int, float]]:
-    """Values (frame, H) of `ppca_curve` one after the other, while the look-ahead is inside the take."""
-    end, n = start + window, window
-    if end + ahead > len(x):
-        return
-    added = x[start:end].sum(axis=0)
-    squares = x[start:end].T @ x[start:end]
-    while end + ahead <= len(x):
-        mean = added / n
-        values, vectors = np.linalg.eigh(squares / n - np.outer(mean, mean))
-        values = np.maximum(values[::-1], 0.0) + _NOISE
-        kept = int(np.searchsorted(np.cumsum(values), variance * values.sum())) + 1
-        if kept < len(values):
-            # what the subspace leaves out counts as noise of equal size in all its directions
-            values[kept:] = values[kept:].mean()
-        along = (x[end : end + ahead] - mean) @ vectors[:, ::-1]
-        yield end, float((along * along / values).sum() / ahead)
-        new = x[end : end + step]
-        added += new.sum(axis=0)
-        squares += new.T @ new
-        end, n = end + step, n + step
+def _one_way(
+    x: Floats, window: int, ahead: int, step: int, variance: float, rise: float, method: str
+) -> list[int]:
+    """Cuts one after the other, the model beginning anew at each."""
+    cuts: list[int] = []
+    start = 0
+    while True:
+        if method == "PPCA":
+            cut = int(_curve(x, start, window, ahead, step, variance, rise, ahead // 4)[2])
+        else:
+            cut = _next_jump(x, start, window, step, variance)
+        if cut < 0:
+            return cuts
+        cuts.append(cut)
+        start = cut
 
 
-def _next_cut(curve: Iterator[tuple[int, float]], rise: float, hold: int) -> int | None:
-    """The first peak `rise` times as high as the valley before it that is not passed within `hold` frames."""
-    valley, peak, where, distance = np.inf, 0.0, -1, 0.0
-    for frame, distance in curve:
-        if where < 0:
-            valley = min(valley, distance)
-            if distance > rise * valley:
-                where, peak = frame, distance
-        elif distance > peak:
-            where, peak = frame, distance
-        elif frame - where >= hold:
-            return where
-    # where the take ends soon, a curve that has turned down has had its peak
-    return where if distance < peak else None
+@numba.njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
+def _surprise(x: Floats, variance: float) -> float:
+    """Twice the negative log-likelihood of frames under their own PPCA, without the constant."""
+    n = len(x)
+    added, squares = x.sum(axis=0), x.T @ x
+    values, vectors = _model(added, squares, n, _ALIKE, variance)
+    return n * (_distance(values, vectors, added / n, added, squares, n) + np.log(values).sum())
+
+
+def difference(x: Floats, start: int, cut: int, end: int, variance: float = _BESIDE_VARIANCE) -> float:
+    """How much worse one PPCA explains two neighbouring pieces than one for each does.
+
+    Parameters
+    ----------
+    x : (T, D)
+        Poses.
+    start, cut, end
+        Frames: the pieces are start ≤ t < cut and cut ≤ t < end.
+
+    Returns
+    -------
+    float
+        Twice the log-likelihood ratio, divided by the number of frames; pieces that are one motion give
+        little.
+    """
+    apart = _surprise(x[start:cut], variance) + _surprise(x[cut:end], variance)
+    return float(_surprise(x[start:end], variance) - apart) / (end - start)
+
+
+def _grouped(cuts: list[int], near: int) -> list[int]:
+    """Cuts that lie within less than `near` frames of a group's first are one, at the group's mean."""
+    groups: list[list[int]] = []
+    for cut in sorted(cuts):
+        if groups and cut - groups[-1][0] < near:
+            groups[-1].append(cut)
+        else:
+            groups.append([cut])
+    return [round(sum(g) / len(g)) for g in groups]
+
+
+def _told_apart(x: Floats, cuts: list[int], least: float, beside: int) -> list[int]:
+    """Drop cuts, the least first, whose sides differ by less than `least` (`difference`)."""
+    found = list(cuts)
+
+    def sides(i: int) -> float:
+        start = max(found[i - 1] if i else 0, found[i] - beside)
+        end = min(found[i + 1] if i + 1 < len(found) else len(x), found[i] + beside)
+        return difference(x, start, found[i], end)
+
+    by = [sides(i) for i in range(len(found))]
+    while found:
+        i = int(np.argmin(by))
+        if by[i] >= least:
+            break
+        del found[i], by[i]
+        for k in range(max(0, i - 1), min(len(found), i + 1)):
+            by[k] = sides(k)
+    return found
 
 
 def segment(
     motion: Motion,
     *,
     method: Literal["PPCA", "PCA"] = "PPCA",
-    variance: float = 0.95,
+    variance: float = 0.9,
     window_s: float = 1.5,
     ahead_s: float = 1.25,
-    step_s: float = 1 / 12,
-    rise: float = 5.0,
+    step_s: float = 1 / 6,
+    rise: float = 4.0,
+    near_s: float = 2 / 3,
+    differ: float = 4.5,
     joints: Mapping[str, str] | None = None,
 ) -> Cuts:
     """Frames at which a take is cut into single motions.
@@ -165,7 +286,7 @@ def segment(
     variance
         Share of the variance that the subspace keeps (τ).
     window_s
-        Seconds of the first model after a cut; no piece but the last is shorter.
+        Seconds of the first model after a cut.
     ahead_s
         Seconds of the look-ahead.
     step_s
@@ -173,6 +294,13 @@ def segment(
     rise
         PPCA: a cut is made at a peak of H that is at least so many times the valley before it (R). The ratio,
         not the difference, because H of a lively and of a quiet motion differ by orders of magnitude.
+    near_s
+        PPCA looks forwards and backwards in time: a simpler motion that follows a richer one never leaves its
+        model, but the richer one leaves that of the simpler. Cuts of either way that are nearer than this are
+        one, at their mean.
+    differ
+        PPCA: a cut is kept where `difference` of the (at most) three seconds on its two sides is at least
+        this.
     joints
         As in `features`.
 
@@ -186,6 +314,12 @@ def segment(
     InputError
         A setting is out of range, or the skeleton lacks a joint.
 
+    Notes
+    -----
+    About 30 frames per second are looked at, whatever the take's rate. Mean and covariance of the model are
+    updated as frames come; each test costs an eigendecomposition of the few directions that the take varies
+    in.
+
     References
     ----------
     J. Barbič et al., Segmenting motion capture data into distinct behaviors, Graphics Interface 2004,
@@ -197,31 +331,31 @@ def segment(
         raise InputError(
             f"variance {variance} and rise {rise}, expected a share between 0 and 1 and a factor above 1"
         )
-    if min(window_s, ahead_s, step_s) <= 0:
+    if not min(window_s, ahead_s, step_s) > 0:
         raise InputError("window_s, ahead_s and step_s must be positive")
-    window, ahead, step = (max(1, round(s * motion.fps)) for s in (window_s, ahead_s, step_s))
-    x = pose(motion, joints)
+    if not (near_s >= 0 and differ >= 0):
+        raise InputError("near_s and differ must not be negative")
+    stride = max(1, round(motion.fps / _RATE))
+    fps = motion.fps / stride
+    window, ahead, step, near, beside = (
+        max(1, round(s * fps)) for s in (window_s, ahead_s, step_s, near_s, _BESIDE)
+    )
+    x = pose(motion[::stride], joints)
     if x.size == 0:
         return np.zeros(0, dtype=np.int64)
-    # sums of squares lose fewer digits about the take's mean
-    x -= x.mean(axis=0)
-    cuts: list[int] = []
-    start = 0
-    while True:
-        if method == "PPCA":
-            cut = _next_cut(_growing(x, start, window, ahead, step, variance), rise, ahead // 4)
-        else:
-            cut = _next_jump(x, start, window, step, variance)
-        if cut is None:
-            return np.array(cuts, dtype=np.int64)
-        cuts.append(cut)
-        start = cut
+    x = _main_axes(x)
+    cuts = _one_way(x, window, ahead, step, variance, rise, method)
+    if method == "PPCA":
+        back = _one_way(np.ascontiguousarray(x[::-1]), window, ahead, step, variance, rise, method)
+        cuts = _grouped(cuts + [len(x) - c for c in back], near)
+        cuts = _told_apart(x, cuts, differ, beside)
+    return stride * np.array(cuts, dtype=np.int64)
 
 
-def _next_jump(x: Floats, start: int, window: int, step: int, variance: float) -> int | None:
+def _next_jump(x: Floats, start: int, window: int, step: int, variance: float) -> int:
     """PCA variant (section 3.1): where the projection error's growth exceeds its mean by three deviations."""
     if start + 2 * window > len(x):
-        return None
+        return -1
     first = x[start : start + window]
     mean = first.mean(axis=0)
     values, vectors = np.linalg.eigh(np.cov(first.T, bias=True).reshape(x.shape[1], -1))
@@ -239,7 +373,7 @@ def _next_jump(x: Floats, start: int, window: int, step: int, variance: float) -
     # a mean and a deviation need as many frames as the subspace did
     tested = np.arange(window, len(growth), step)
     jump = tested[growth[tested] > average[tested - 1] + 3.0 * deviation[tested - 1] + lag * _NOISE]
-    return int(start + window + jump[0]) if len(jump) else None
+    return int(start + window + jump[0]) if len(jump) else -1
 
 
 def pieces(cuts: ArrayLike, frames: int, shortest: int = 1) -> NDArray[np.int64]:
