@@ -1,6 +1,5 @@
 // `node build.mjs` writes what the Python package carries; `--test` writes the tests as files that Node runs.
-import { readFileSync } from "node:fs";
-import { readdirSync } from "node:fs";
+import { readdirSync, readFileSync } from "node:fs";
 import { build } from "esbuild";
 
 const home = "../src/miburi/report/templates";

@@ -292,8 +292,9 @@ class Flow:
         return found
 
     def searches(self) -> list[str]:
-        """Rankings of the logs in the folders that the config names."""
-        return [f"results/{c}/search/{q}.csv" for c in self.config.search for q in self.logs(c)]
+        """Rankings of the logs in the folders that the config names, and their pages."""
+        found = [f"results/{c}/search/{q}" for c in self.config.search for q in self.logs(c)]
+        return [f"{path}{ending}" for path in found for ending in (".csv", ".html")]
 
     def simulated_log(self, corpus: str, query: str) -> bool:
         """Whether the config says that a log is a simulator's."""

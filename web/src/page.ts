@@ -1,4 +1,4 @@
-import { cividis } from "./figure";
+import { cividis } from "./geometry";
 import { gestures, models } from "./gestures";
 import { retrieval } from "./retrieval";
 import { search } from "./search";

@@ -35,3 +35,31 @@ rule page:
         code=code("page.py"),
     script:
         "../scripts/page.py"
+
+
+rule search_page:
+    input:
+        table="results/{corpus}/search/{query}.csv",
+        index="results/{corpus}/index.h5",
+        motion=lambda wildcards: FLOW.of_shards(wildcards.corpus, "motion"),
+        log=lambda wildcards: FLOW.log_of(wildcards.corpus, wildcards.query),
+    output:
+        report(
+            "results/{corpus}/search/{query}.html",
+            caption="../report/search.rst",
+            category="Searches",
+            labels={"corpus": "{corpus}", "query": "{query}", "what": "page"},
+        ),
+    log:
+        "results/logs/search_page/{corpus}/{query}.log",
+    benchmark:
+        "results/benchmarks/search_page/{corpus}/{query}.tsv"
+    resources:
+        mem_mb=megabytes(800, 10),
+        runtime=minutes(10, 0.1),
+    params:
+        simulated=lambda wildcards: FLOW.simulated(wildcards.corpus),
+        settings=CONFIG.features.model_dump(),
+        code=code("search_page.py"),
+    script:
+        "../scripts/search_page.py"

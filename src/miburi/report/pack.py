@@ -19,7 +19,7 @@ from miburi.render import figure
 UNITS = {"hand": 0.0004, "body": 0.002}
 """Metres that one step of the packed numbers stands for."""
 
-_HEAD = 0.065
+_HEAD = 0.052
 """Radius of a head, metres."""
 
 
