@@ -254,6 +254,31 @@ class Flow:
         strips = ["results/fig6.png"] if self.changes() else []
         return ["results/fig4.png", "results/fig5.png", *strips]
 
+    def shown(self) -> dict[str, list[str]]:
+        """Artefacts of all corpora, strings and experiments that the report shows, by kind."""
+        strings, experiments = self.config.strings.items(), self.config.experiments.items()
+        return {
+            "motion": [p for c in self.config.corpora for p in self.of_shards(c, "motion")],
+            "segments": [p for c in self.names("body") for p in self.of_shards(c, "segments")],
+            "syntheses": [f"results/{s.corpus}/synthesis/{name}.h5" for name, s in strings],
+            "models": list(
+                dict.fromkeys(
+                    f"results/{s.corpus}/models/{m}.h5" for name, s in strings for m in self.labels(name)
+                )
+            ),
+            "queries": [f"data/raw/{e.corpus}/queries/{name}/queries.tsv" for name, e in experiments],
+            "query_logs": [f"data/raw/{e.corpus}/queries/{name}/logs" for name, e in experiments],
+            "query_features": [f"results/{e.corpus}/queries/{name}.h5" for name, e in experiments],
+            "ranks": [p for name in self.config.experiments for p in self.ranks(name)],
+        }
+
+    def named_joints(self) -> dict[str, dict[str, Any]]:
+        """Corpus → take → names of joints, where a config gives them."""
+        return {
+            c: {t: j for s in self.shards[c] for t, j in self.per_take(c, s, "joints").items()}
+            for c in self.names("body")
+        }
+
     def film_names(self) -> list[tuple[str, str]]:
         """Corpus and name of each film that `all` makes."""
         found = [(s.corpus, name) for name, s in self.config.strings.items()]
@@ -278,8 +303,9 @@ class Flow:
         return found | {name: path for name, path in _puppet_logs("data/puppet").items() if name not in found}
 
     def searches(self) -> list[str]:
-        """Rankings of the logs in the folders that the config names."""
-        return [f"results/{c}/search/{q}.csv" for c in self.config.search for q in self.logs(c)]
+        """Rankings of the logs in the folders that the config names, and their pages."""
+        found = [f"results/{c}/search/{q}" for c in self.config.search for q in self.logs(c)]
+        return [f"{path}{ending}" for path in found for ending in (".csv", ".html")]
 
     def targets(self, corpus: str) -> str:
         """Table of what a corpus' logs imitate."""

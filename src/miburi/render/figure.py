@@ -138,8 +138,8 @@ def _one(motion: Motion) -> Group:
     lengths = np.linalg.norm(points[0, bones[:, 0]] - points[0, bones[:, 1]], axis=1)
     bones, lengths = bones[lengths > 1e-3], lengths[lengths > 1e-3]  # joints in one place need no bone
     hand = is_hand(skeleton)
-    owner = np.concatenate([np.arange(n), skeleton.ends]).astype(np.int64)
-    colours = np.array(_finger_colours() if hand else _side_colours(skeleton), dtype=np.float64)[owner]
+    palette = np.array((_TRUNK, *_FINGERS) if hand else (_TRUNK, _LEFT, _RIGHT, _LEFT, _RIGHT))
+    colours = palette[limbs(skeleton)]
     thickness = 0.0062 if hand else 0.019 * _height(skeleton)
     radii, bone_radii = _sizes(points.shape[1], bones, lengths, thickness)
     points[:, :hidden] = points[:, hidden : hidden + 1]  # inside the first joint that is seen
@@ -202,23 +202,31 @@ def _floor(points: Floats, thickness: float) -> float:
     return float(np.quantile(points[:, :, 1].min(axis=1), 0.01)) - thickness
 
 
-def _finger_colours() -> list[tuple[float, float, float]]:
-    return [_TRUNK, *(_FINGERS[FINGERS.index(j[:-1])] for j in HAND.joints[1:])]
+LIMBS = ("trunk", "left arm", "right arm", "left leg", "right leg")
+"""Parts of a body."""
 
 
-def _side_colours(skeleton: Skeleton) -> list[tuple[float, float, float]]:
-    """Left limbs warm, right limbs cool, the trunk grey; all grey where the joints' names say nothing."""
-    try:
-        known = find_joints(skeleton)
-    except InputError:
-        return [_TRUNK] * len(skeleton)
-    colours = [_TRUNK] * len(skeleton)
-    for start, colour in (("l_shoulder", _LEFT), ("l_hip", _LEFT), ("r_shoulder", _RIGHT), ("r_hip", _RIGHT)):
-        colours[known[start]] = colour
-    for j, p in enumerate(skeleton.parents):
-        if p >= 0 and colours[p] != _TRUNK:
-            colours[j] = colours[p]
-    return colours
+def limbs(skeleton: Skeleton) -> list[int]:
+    """The part that each joint, then each end, belongs to.
+
+    Of a body an index of `LIMBS`; of a hand 0 for the wrist and 1 to 5 for the fingers. All 0 where the joints'
+    names say nothing.
+    """
+    found = [0] * len(skeleton)
+    if is_hand(skeleton):
+        found = [0, *(1 + FINGERS.index(j[:-1]) for j in HAND.joints[1:])]
+    else:
+        try:
+            known = find_joints(skeleton)
+        except InputError:
+            known = {}
+        for part, start in enumerate(("l_shoulder", "r_shoulder", "l_hip", "r_hip"), 1):
+            if known:
+                found[known[start]] = part
+        for j, p in enumerate(skeleton.parents):
+            if p >= 0 and found[p]:
+                found[j] = found[p]
+    return [*found, *(found[e] for e in skeleton.ends)]
 
 
 def _front(motion: Motion, joints: Floats) -> Floats:

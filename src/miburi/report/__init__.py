@@ -1,5 +1,1 @@
-"""The page that shows a run."""
-
-from miburi.report.page import Corpus, Film, Picture, Section, Table, page
-
-__all__ = ["Corpus", "Film", "Picture", "Section", "Table", "page"]
+"""The pages that show a run."""

@@ -1,17 +1,26 @@
-"""One self-contained HTML page: tables with the paper's figures beside ours, pictures, films."""
+"""Self-contained HTML: text is escaped, style, script and motions lie in the page itself."""
 
 from __future__ import annotations
 
 import base64
 import csv
+import io
+import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import jinja2
+from markupsafe import Markup
+from PIL import Image
 
-_KINDS = {".png": "image/png", ".mp4": "video/mp4"}
+from miburi.report.pack import Clips
+
+_KINDS = {".png": "image/png", ".webp": "image/webp", ".mp4": "video/mp4"}
 
 
 @dataclass(frozen=True)
@@ -27,71 +36,9 @@ class Table:
         """Whether each column holds numbers alone, which stand to the right."""
         return tuple(all(_is_number(row[k]) for row in self.rows) for k in range(len(self.columns)))
 
-
-@dataclass(frozen=True)
-class Picture:
-    """A picture as a data URI, and what it shows in words."""
-
-    data: str
-    alt: str
-
-
-@dataclass(frozen=True)
-class Film:
-    """A film: a data URI, or a path from the page."""
-
-    source: str
-    alt: str
-
-
-@dataclass(frozen=True)
-class Corpus:
-    """What a corpus holds."""
-
-    name: str
-    kind: str
-    simulated: bool
-    takes: int
-    seconds: float
-
-
-@dataclass(frozen=True)
-class Section:
-    """A part of the page: what it shows in plain words, how to make it anew, and the things themselves."""
-
-    name: str
-    title: str
-    words: str
-    target: str = ""
-    table: Table | None = None
-    pictures: tuple[Picture, ...] = ()
-    films: tuple[Film, ...] = ()
-
-
-def page(sections: Sequence[Section], corpora: Sequence[Corpus]) -> str:
-    """The page as text; the same sections give the same bytes.
-
-    Parameters
-    ----------
-    sections
-        In their order.
-    corpora
-        What the run was made from; the page says which of them are simulated.
-    """
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("miburi.report", "."),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    simulated = [c.name for c in corpora if c.simulated]
-    return (
-        environment.get_template("page.html")
-        .render(sections=sections, corpora=corpora, simulated=simulated)
-        .rstrip("\n")
-        + "\n"
-    )
+    def records(self) -> list[dict[str, str]]:
+        """Rows by the names of columns."""
+        return [dict(zip(self.columns, row, strict=True)) for row in self.rows]
 
 
 def read_table(path: str | os.PathLike[str], most: int | None = None, mean: str = "") -> Table:
@@ -105,9 +52,68 @@ def read_table(path: str | os.PathLike[str], most: int | None = None, mean: str 
 
 
 def embedded(path: str | os.PathLike[str]) -> str:
-    """A picture or film as a data URI."""
-    kind = _KINDS[Path(path).suffix]
-    return f"data:{kind};base64,{base64.b64encode(Path(path).read_bytes()).decode()}"
+    """A picture or film as a data URI; a PNG becomes a WebP, which takes a fraction of it."""
+    where, data = Path(path), Path(path).read_bytes()
+    kind = _KINDS[where.suffix]
+    if where.suffix == ".png":
+        buffer = io.BytesIO()
+        Image.open(where).convert("RGB").save(buffer, "WEBP", quality=82, method=4)
+        if len(buffer.getvalue()) < len(data):
+            kind, data = _KINDS[".webp"], buffer.getvalue()
+    return f"data:{kind};base64,{base64.b64encode(data).decode()}"
+
+
+def render(
+    template: str, clips: Clips, packs: Mapping[str, str], numbers: Mapping[str, str], **facts: Any
+) -> str:
+    """A page as text; the same facts give the same bytes.
+
+    Parameters
+    ----------
+    template
+        A file of `templates/`.
+    clips
+        Motions that the page plays.
+    packs, numbers
+        Packed structures and packed numbers by the names that the page's script asks for.
+    **facts
+        What the template shows.
+    """
+    page = _environment().get_template(template)
+    text = page.render(
+        style=_part("page.css"),
+        script=_part("page.js"),
+        clips=clips,
+        clip_facts=_json({"skeletons": clips.skeletons, "clips": clips.about}),
+        packs=packs,
+        numbers=numbers,
+        **facts,
+    )
+    return text.rstrip("\n") + "\n"
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    return jinja2.Environment(
+        loader=jinja2.PackageLoader("miburi.report", "templates"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+
+
+@cache
+def _part(name: str) -> Markup:
+    """Style or script of the page, as `npm run build` in web/ made it."""
+    text = (files("miburi.report") / "templates" / name).read_text(encoding="utf-8")
+    return Markup(text.replace("</script", "<\\/script"))
+
+
+def _json(value: Any) -> Markup:
+    """JSON that cannot end its script element."""
+    text = json.dumps(value, separators=(",", ":"), ensure_ascii=False, sort_keys=True)
+    return Markup(text.replace("<", "\\u003c"))
 
 
 def _is_number(text: str) -> bool:
