@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import time
-from dataclasses import replace
+from dataclasses import fields, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -33,7 +33,7 @@ from miburi.perform.puppeteer import (
     trunk,
     users,
 )
-from miburi.perform.puppeteer.users import perfect
+from miburi.perform.puppeteer.users import _BY_SKILL, perfect
 
 LIMB_COLUMNS = (
     (0, 1, 2, 6),
@@ -179,6 +179,15 @@ def test_the_configs_experiments_have_five_test_users():
         for experiment in yaml.safe_load(path.read_text(encoding="utf-8")).get("experiments", {}).values():
             assert experiment.get("split", "test") == "test"
             assert path.name == "test.yaml" or experiment.get("users", 5) == 5
+
+
+def test_every_setting_is_explained():
+    """docs/puppeteer.md names each habit, and the figures that skill changes are those of the program."""
+    page = (ROOT / "docs" / "puppeteer.md").read_text(encoding="utf-8")
+    for field in fields(Habits):
+        assert f"| `{field.name}` |" in page, field.name
+    for name, (least, most) in _BY_SKILL.items():
+        assert f"| `{name}` | {least:g} → {most:g}" in page, name
 
 
 # the puppet's body -------------------------------------------------------------------------------------
