@@ -2,25 +2,31 @@
 
 python tools/compare_gloves.py FOLDER    # FOLDER: the config key `recordings`
 
-Writes the table into docs/janken.md, and the plot docs/janken_sensors.png.
+Writes the table into docs/janken.md, the plot docs/janken_sensors.png and the hands docs/janken_hands.png.
 """
 
 import sys
+import tempfile
 from pathlib import Path
 
 import matplotlib
 import numpy as np
+from PIL import Image
 
-from miburi.formats import columns
+import miburi
+from miburi.formats import columns, glove
 from miburi.formats.labels import read_labels
 from miburi.perform import janken
 from miburi.perform.janken.sensors import SENSORS
+from miburi.render import sheets
 
 matplotlib.use("agg")
 from matplotlib import pyplot as plt
 
 ROOT = Path(__file__).parents[1]
 PAGE, PLOT = ROOT / "docs" / "janken.md", ROOT / "docs" / "janken_sensors.png"
+HANDS = ROOT / "docs" / "janken_hands.png"
+MAP = ROOT / "config" / "gloves" / "cyberglove_rps.yaml"
 BEGIN, END = "<!-- sensors -->\n", "<!-- end of sensors -->\n"
 SEED, REAL_FPS = 2011, 24.0
 SHOWN = (0, 4, 7, 8, 12, 14, 16, 19)
@@ -32,8 +38,7 @@ BENDS = [1, 2, 4, 5, 6, 7, 8, 9, 11, 12, 13, 15, 16, 17, 20]  # negative in the 
 def real(folder):
     """Degrees (T, 22) and labels."""
     home = Path(folder) / "hand" / "cyberglove_rps"
-    table = columns.load(ROOT / "config" / "gloves" / "cyberglove_rps.yaml")
-    degrees = np.degrees(columns.raw(home / "mock.txt.gz", table)[1])
+    degrees = np.degrees(columns.raw(home / "mock.txt.gz", columns.load(MAP))[1])
     degrees[:, BENDS] *= -1
     return [(degrees, read_labels(home / "labels_exclusive.tsv", fps=REAL_FPS))]
 
@@ -116,6 +121,23 @@ def plot(theirs, ours):
     grid.savefig(PLOT, dpi=90, metadata={"Software": None})
 
 
+def hands(folder, theirs):
+    """The middles of eight intervals in a row: the real hand, then each recording of the simulated one."""
+    real_hand = glove.read_columns(Path(folder) / "hand" / "cyberglove_rps" / "mock.txt.gz", MAP)
+    shown = [(real_hand, theirs[0][1][1:9], "a CyberGlove")]
+    with tempfile.TemporaryDirectory() as home:
+        janken.write(home, SEED)
+        for take, (_, labels) in janken.perform(SEED).items():
+            shown.append((miburi.read(Path(home) / f"{take}.csv"), labels[20:28], f"simulated, {take}"))
+        rows = []
+        for motion, labels, title in shown:
+            strip = sheets.Strip("", [(start + end) // 2 for start, end, _ in labels])
+            words = f"{title}: " + " ".join(name for _, _, name in labels)
+            sheets.sheet(Path(home) / "row.png", motion, [strip], title=words, width=130, height=130)
+            rows.append(np.asarray(Image.open(Path(home) / "row.png")))
+    Image.fromarray(np.concatenate(rows)).quantize(64).save(HANDS, optimize=True)
+
+
 def main():
     if len(sys.argv) != 2:
         print(__doc__.strip(), file=sys.stderr)
@@ -125,6 +147,7 @@ def main():
     after = rest.partition(END)[2]
     PAGE.write_text(f"{before}{BEGIN}\n{table(theirs, ours)}\n{END}{after}", encoding="utf-8")
     plot(theirs, ours)
+    hands(sys.argv[1], theirs)
     return 0
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import time
-from dataclasses import replace
+from dataclasses import fields, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -33,7 +33,7 @@ from miburi.perform.puppeteer import (
     trunk,
     users,
 )
-from miburi.perform.puppeteer.users import perfect
+from miburi.perform.puppeteer.users import _BY_SKILL, perfect
 
 LIMB_COLUMNS = (
     (0, 1, 2, 6),
@@ -181,6 +181,15 @@ def test_the_configs_experiments_have_five_test_users():
             assert path.name == "test.yaml" or experiment.get("users", 5) == 5
 
 
+def test_every_setting_is_explained():
+    """docs/puppeteer.md names each habit, and the figures that skill changes are those of the program."""
+    page = (ROOT / "docs" / "puppeteer.md").read_text(encoding="utf-8")
+    for field in fields(Habits):
+        assert f"| `{field.name}` |" in page, field.name
+    for name, (least, most) in _BY_SKILL.items():
+        assert f"| `{name}` | {least:g} → {most:g}" in page, name
+
+
 # the puppet's body -------------------------------------------------------------------------------------
 
 
@@ -197,7 +206,7 @@ def test_limbs_point_where_the_formulae_say(limb, shares):
     q = np.radians(angles)
     place, elbow = np.empty((4, 3)), np.empty((4, 3))
     body._turn(q, body._tip(q[3], body.UPPER[limb], body.LOWER[limb], limb > 1), place)
-    body._turn(q, np.array([0.0, -body.UPPER[limb], 0.0]), elbow)
+    body._turn(q, (0.0, -body.UPPER[limb], 0.0), elbow)
     upper, lower = naive_limb(angles if limb < 2 else angles[[0, 1, 3]], limb)
     mirror = [body.SIDE[limb], 1, 1]
     np.testing.assert_allclose(elbow[0] * mirror, body.UPPER[limb] * upper, atol=1e-12)
@@ -208,7 +217,7 @@ def test_limbs_point_where_the_formulae_say(limb, shares):
 
 @given(st.lists(st.floats(-1.5, 1.5), min_size=6, max_size=6))
 def test_derivatives_of_a_turn_are_those_of_finite_differences(values):
-    q, v = np.array([*values[:3], 0.0]), np.array(values[3:])
+    q, v = np.array([*values[:3], 0.0]), tuple(values[3:])
     out, more, less = np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 3))
     body._turn(q, v, out)
     for i in range(3):
@@ -236,7 +245,7 @@ def test_hands_and_feet_reach_what_can_be_reached():
             q = ranges[:, 0] + (ranges[:, 1] - ranges[:, 0]) * rng.random(4)
             place, elbow = np.empty((4, 3)), np.empty((4, 3))
             body._turn(q, body._tip(q[3], body.UPPER[limb], body.LOWER[limb], limb > 1), place)
-            body._turn(q, np.array([0.0, -body.UPPER[limb], 0.0]), elbow)
+            body._turn(q, (0.0, -body.UPPER[limb], 0.0), elbow)
             found = body.settle(
                 np.zeros(4), place[0], elbow[0], 0.3, body.UPPER[limb], body.LOWER[limb], limb > 1, ranges
             )

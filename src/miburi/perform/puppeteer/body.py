@@ -103,7 +103,7 @@ def _turn(q, v, out):  # type: ignore[no-untyped-def]
 def _tip(bend, upper, lower, leg):  # type: ignore[no-untyped-def]
     """Hand or foot from shoulder or hip before R turns it: elbows bend forward, knees backward."""
     forward = -lower * np.sin(bend) if leg else lower * np.sin(bend)
-    return np.array([0.0, -upper - lower * np.cos(bend), forward])
+    return 0.0, -upper - lower * np.cos(bend), forward
 
 
 @njit(cache=True)
@@ -127,16 +127,22 @@ def _step(q, hand, elbow, weight, v, upper, ranges):  # type: ignore[no-untyped-
     """One damped least-squares step of (z, x, y) towards the wanted places; returns the largest change."""
     a, b = np.empty((4, 3)), np.empty((4, 3))
     _turn(q, v, a)
-    _turn(q, np.array([0.0, -upper, 0.0]), b)
-    normal, right = np.zeros((3, 3)), np.zeros(3)
+    _turn(q, (0.0, -upper, 0.0), b)
+    normal, right = np.empty((3, 3)), np.empty(3)
     for i in range(3):
+        right[i] = 0.0
+        for j in range(3):
+            normal[i, j] = 0.0
         for d in range(3):
             right[i] += a[i + 1, d] * (hand[d] - a[0, d]) + weight * b[i + 1, d] * (elbow[d] - b[0, d])
             for j in range(3):
                 normal[i, j] += a[i + 1, d] * a[j + 1, d] + weight * b[i + 1, d] * b[j + 1, d]
     for i in range(3):  # a joint at its stop that is pushed further takes no part
         if (q[i] <= ranges[i, 0] and right[i] <= 0) or (q[i] >= ranges[i, 1] and right[i] >= 0):
-            normal[i, :], normal[:, i], right[i] = 0.0, 0.0, 0.0
+            right[i] = 0.0
+            for j in range(3):
+                normal[i, j] = 0.0
+                normal[j, i] = 0.0
         normal[i, i] += _DAMPING
     _solve(normal, right)
     largest = 0.0
@@ -155,7 +161,7 @@ def solve(q, hand, elbow, weight, upper, lower, leg, ranges):  # type: ignore[no
     with `weight`. Each angle stays in its range.
     """
     out = q.copy()
-    distance = min(max(np.sqrt(np.sum(hand**2)), abs(upper - lower)), upper + lower)
+    distance = min(max(np.sqrt(hand[0] * hand[0] + hand[1] * hand[1] + hand[2] * hand[2]), abs(upper - lower)), upper + lower)
     cosine = (distance**2 - upper**2 - lower**2) / (2 * upper * lower)
     out[3] = min(max(np.arccos(min(max(cosine, -1.0), 1.0)), ranges[3, 0]), ranges[3, 1])
     v = _tip(out[3], upper, lower, leg)
@@ -185,17 +191,19 @@ _BEGINNINGS = np.radians(
 def settle(q, hand, elbow, weight, upper, lower, leg, ranges):  # type: ignore[no-untyped-def]
     """`solve` from several beginnings, at leisure: the pose whose hand or foot comes closest."""
     best, least = q.copy(), np.inf
-    place = np.empty((4, 3))
+    trial, place = q.copy(), np.empty((4, 3))
     for k in range(len(_BEGINNINGS) + 1):
-        trial = q.copy() if k == 0 else _BEGINNINGS[k - 1].copy()
         for i in range(4):
-            trial[i] = min(max(trial[i], ranges[i, 0]), ranges[i, 1])
+            begin = q[i] if k == 0 else _BEGINNINGS[k - 1, i]
+            trial[i] = min(max(begin, ranges[i, 0]), ranges[i, 1])
         for _ in range(5):
             trial = solve(trial, hand, elbow, weight, upper, lower, leg, ranges)
         _turn(trial, _tip(trial[3], upper, lower, leg), place)
-        error = np.sum((place[0] - hand) ** 2)
+        error = 0.0
+        for d in range(3):
+            error += (place[0, d] - hand[d]) * (place[0, d] - hand[d])
         if error < least - 1e-8:
-            best, least = trial, error
+            best, least = trial.copy(), error
     return best
 
 
@@ -215,22 +223,28 @@ def follow(  # type: ignore[no-untyped-def]
     out = np.empty((len(hands), 4))
     q = start.copy()
     moving = np.zeros(4, np.bool_)
-    offset, since = np.zeros(3), 0
+    offset, wanted, since = np.zeros(3), np.empty(3), 0
     place = np.empty((4, 3))
     for t in range(len(hands)):
         if held[t]:
             if t == 0 or not held[t - 1]:
                 _turn(q, _tip(q[3], upper, lower, leg), place)
-                offset, since = place[0] - hands[t], 0
-                moving[:] = False
+                since = 0
+                for d in range(3):
+                    offset[d] = place[0, d] - hands[t, d]
+                for i in range(4):
+                    moving[i] = False
             r = min(since / max(join, 1), 1.0)
             since += 1
-            wanted = hands[t] + offset * (1.0 - r**3 * (10.0 - 15.0 * r + 6.0 * r**2))
+            left = 1.0 - r * r * r * (10.0 - 15.0 * r + 6.0 * r * r)
+            for d in range(3):
+                wanted[d] = hands[t, d] + offset[d] * left
             pushed = solve(q, wanted, elbows[t], weight, upper, lower, leg, ranges)
             for i in range(4):
                 change = min(max(pushed[i] - q[i], -_FASTEST), _FASTEST)
                 if moving[i] or abs(pushed[i] - q[i]) > stick:
                     q[i] += change
                     moving[i] = abs(change) > _REST
-        out[t] = q
+        for i in range(4):
+            out[t, i] = q[i]
     return out

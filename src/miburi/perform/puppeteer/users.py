@@ -1,8 +1,8 @@
 """Who plays the puppet: users, their skill and their habits.
 
-The figures in this module were fixed from what [P] says and from common knowledge of hands before any query
-was ranked. The rules of `plan` and `trunk` were mended after looking at plays of development users; no test
-user was looked at.
+Each figure stands beside the sentence of [P] that it models in docs/puppeteer.md. They were fixed from what [P]
+says and from common knowledge of hands, before any query of theirs was ranked; the rules of `plan`, `imitation`
+and `trunk` were mended after looking at plays of development users. No test user was looked at for either.
 """
 
 from __future__ import annotations
