@@ -205,9 +205,12 @@ class Flow:
         return [f"results/{s.corpus}/synthesis/{name}.csv" for name, s in self.config.strings.items()]
 
     def filled_tables(self) -> dict[str, str]:
-        """Tables of [P] that this config's experiments fill, and the experiment of each."""
+        """Tables of [P] and ours beside them that this config's experiments fill, and the experiment of each."""
         first, second = self.config.tables.experiment1, self.config.tables.experiment2
         which = {"table1": first, "table2": first, "table3": second, "table4": first, "table5": second}
+        which |= {"differences1": first, "differences2": second}
+        if first and 3 in self.config.experiments[first].protocols:
+            which["other_people"] = first
         return {table: experiment for table, experiment in which.items() if experiment}
 
     def tables(self) -> list[str]:

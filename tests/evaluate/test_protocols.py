@@ -22,7 +22,7 @@ from miburi.evaluate.queries import (
     write_queries,
 )
 from miburi.evaluate.ranks import Ranks, read_ranks, write_ranks
-from miburi.evaluate.statistics import chance_of_hit, chance_rank, difference, interval
+from miburi.evaluate.statistics import chance_first, chance_of_hit, chance_rank, difference, interval
 from miburi.perform.puppeteer import users
 
 SEGMENTS = [("a", 0, 100), ("a", 100, 200), ("b", 0, 50), ("b", 50, 150), ("c", 0, 80), ("c", 80, 90)]
@@ -133,6 +133,8 @@ def test_scores_by_definition(seed: int) -> None:
     better, equal = (distance < distance[0]).sum(), (distance == distance[0]).sum()
     assert row.rank == pytest.approx(better + (equal + 1) / 2)
     assert row.hit5 == any(relevant[:5])
+    assert row.precision5 == sum(relevant[:5]) / 5
+    assert row.precision10 == sum(relevant) / 6
     assert (row.segments, row.relevant) == (6, 3)
 
 
@@ -157,9 +159,19 @@ def test_scores_and_ranks_come_back(tmp_path: Path) -> None:
     write_scores(tmp_path / "s.csv", rows)
     for one, other in zip(read_scores(tmp_path / "s.csv"), rows, strict=True):
         assert one.average_precision == pytest.approx(other.average_precision, rel=1e-5)
-        assert replace(one, average_precision=0, chance_hit10=0, chance_hit5=0, skill=0) == replace(
-            other, average_precision=0, chance_hit10=0, chance_hit5=0, skill=0
+        rounded = dict.fromkeys(
+            (
+                "average_precision",
+                "precision10",
+                "precision5",
+                "chance_first",
+                "chance_hit10",
+                "chance_hit5",
+                "skill",
+            ),
+            0,
         )
+        assert replace(one, **rounded) == replace(other, **rounded)
 
 
 @pytest.mark.parametrize(("segments", "relevant", "first"), [(7, 2, 3), (6, 0, 5), (5, 5, 1), (4, 2, 10)])
@@ -168,6 +180,8 @@ def test_chance_by_enumeration(segments: int, relevant: int, first: int) -> None
     hits = [any(i < relevant for i in c) for c in combinations(range(segments), shown)]
     assert chance_of_hit(segments, relevant, first) == pytest.approx(np.mean(hits))
     assert chance_rank(segments) == np.mean(np.arange(segments) + 1)
+    firsts = [min(c) + 1 for c in combinations(range(segments), relevant)] if relevant else [0]
+    assert chance_first(segments, relevant) == pytest.approx(np.mean(firsts))
 
 
 def test_interval_of_a_mean() -> None:
@@ -182,5 +196,7 @@ def test_interval_of_a_mean() -> None:
 
 def test_paired_difference() -> None:
     x = np.random.default_rng(4).normal(size=30)
-    assert difference(x.tolist(), x.tolist()) == 1.0
-    assert difference((x + 1).tolist(), x.tolist()) < 1e-4
+    assert difference(x.tolist(), x.tolist()) == (0.0, 0.0, 0.0, 1.0)
+    found = difference((x + 1).tolist(), x.tolist())
+    assert found.p < 1e-4
+    assert found[:3] == pytest.approx((1, 1, 1))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from miburi.errors import InputError
@@ -43,13 +45,17 @@ def scores(measure: str = "DSPM(PCA)", rank: float = 4.0, hit: int = 1) -> list[
             hit,
             hit,
             0.5,
+            0.4,
+            0.2,
             135.0,
+            27.0,
             0.3,
             0.16,
             0.01,
             "simulated",
+            f"ranks/{measure}.h5",
         )
-        for protocol in (1, 2)
+        for protocol in (1, 2, 3)
         for keyword in KEYWORDS
         for user in range(5)
     ]
@@ -81,7 +87,14 @@ def test_ours_is_counted() -> None:
     assert (row["hit10"], row["hit5"], row["users"], row["chance10"]) == (5, 5, 5, 1.5)
     assert rows[1, "DSPM(PCA)", "mean"]["hit10"] == 5
     assert rows[1, "DSPM(GP-LVM)", "mean"]["hit10"] == ""
-    assert rows[1, "DSPM(GP-LVM)", "mean"]["note"] == "GP-LVM is not implemented yet"
+    assert rows[1, "DSPM(GP-LVM)", "mean"]["note"] == "not among this run's measures"
+    assert row["ranks"] == "ranks/DSPM(PCA).h5"
+    assert row["hit10_mean_pose"] == ""
+    with_naive = scores() + scores("mean pose", hit=0)
+    rows = {(r["protocol"], r["measure"], r["keyword"]): r for r in table("table1", with_naive)}
+    for keyword in ("squats", "mean"):
+        row = rows[2, "DSPM(PCA)", keyword]
+        assert (row["hit10"], row["hit10_mean_pose"], row["hit5_mean_pose"]) == (5, 0, 0)
     assert rows[1, "MSM", "mean"]["note"] == "not among this run's measures"
     assert rows[1, "DSPM(PCA)", "mean"]["note"] == ""
 
@@ -91,6 +104,43 @@ def test_seconds_beside_the_papers() -> None:
     assert len([r for r in rows if r["measure"] == "DSPM(PCA)"]) == 2
     assert {r["seconds_paper"] for r in rows} >= {"37.1", "0.54", "0.0023"}
     assert {r["seconds"] for r in rows if r["measure"] == "DSPM(PCA)"} == {"0.01"}
+
+
+def test_the_first_of_a_class_stands_beside_the_clip_shown() -> None:
+    rows = {(r["measure"], r["keyword"]): r for r in table("table2", scores() + scores("mean pose", rank=9))}
+    row = rows["DSPM(PCA)", "mean"]
+    assert (row["mean_rank"], row["mean_first"], row["mean_rank_mean_pose"]) == (4, 2, 9)
+    assert (row["chance_rank"], row["chance_first"]) == (135, 27)
+
+
+def test_measures_are_compared_query_by_query() -> None:
+    mine = [replace(s, rank=float(i % 7), hit10=i % 2) for i, s in enumerate(scores())]
+    theirs = [
+        replace(s, measure="DTW", rank=s.rank + 1 + (i % 3), hit10=1, ranks="ranks/DTW.h5")
+        for i, s in enumerate(mine)
+    ]
+    rows = {(r["protocol"], r["measure"], r["figure"]): r for r in table("differences1", mine + theirs)}
+    assert {m for _, m, _ in rows} == {"DTW"}
+    row = rows[1, "DTW", "rank"]
+    assert row["difference"] == pytest.approx(row["value"] - row["value_against"], abs=1e-3)
+    # spread of the differences, not of the ranks: pairs are kept together
+    gaps = [t.rank - m.rank for m, t in zip(mine, theirs, strict=True) if m.protocol == 1]
+    half = 1.96 * np.std(gaps) / np.sqrt(len(gaps))
+    assert row["difference_low"] == pytest.approx(np.mean(gaps) - half, abs=0.05)
+    assert row["difference_high"] == pytest.approx(np.mean(gaps) + half, abs=0.05)
+    assert float(row["wilcoxon_p"]) < 1e-4
+    assert row["ranks"] == "ranks/DSPM(PCA).h5, ranks/DTW.h5"
+    assert (2, "DTW", "rank") not in rows
+    assert rows[2, "DTW", "precision5"]["difference"] == 0
+    assert table("differences2", theirs) == []
+
+
+def test_other_people() -> None:
+    rows = {(r["measure"], r["keyword"]): r for r in table("other_people", scores() + scores("mean pose"))}
+    row = rows["DSPM(PCA)", "mean"]
+    assert (row["precision5"], row["precision10"], row["mean_average_precision"]) == (0.2, 0.4, 0.5)
+    assert row["chance_precision"] == pytest.approx(9 / 269, abs=1e-3)
+    assert (row["precision10_mean_pose"], row["users"], row["segments"]) == (0.4, 5, 269)
 
 
 def test_label_counts_add_up() -> None:

@@ -114,7 +114,9 @@ def test_training_raises_the_likelihood_and_is_deterministic():
     np.testing.assert_array_equal(gplvm.fit(y).latent, gplvm.fit(y.copy()).latent)
 
 
-@pytest.mark.parametrize(("seed", "q", "away"), [(0, 2, 0.0), (1, 2, 0.3), (2, 2, 2.0), (3, 1, 0.3), (4, 3, 0.3)])
+@pytest.mark.parametrize(
+    ("seed", "q", "away"), [(0, 2, 0.0), (1, 2, 0.3), (2, 2, 2.0), (3, 1, 0.3), (4, 3, 0.3)]
+)
 def test_projection_is_as_likely_as_a_search_from_everywhere(seed, q, away):
     """BFGS from a few starts against simplices from every latent point, on the density written out."""
     y = smooth(8, 5, seed, noise=0.1)
@@ -145,7 +147,9 @@ def test_any_frames_have_a_model(n, q, kind):
     assert np.isfinite(latent).all() and np.isfinite(error).all()
     if kind == 1 or n == 1:
         # nothing varies: what is lost is the distance from the only pose there is
-        np.testing.assert_allclose(error, np.linalg.norm(np.vstack([y, y[:1] + 1.0]) - y[0], axis=1), atol=1e-6)
+        np.testing.assert_allclose(
+            error, np.linalg.norm(np.vstack([y, y[:1] + 1.0]) - y[0], axis=1), atol=1e-6
+        )
 
 
 @pytest.fixture(scope="module")

@@ -1,13 +1,15 @@
 """Measures, ranking and the index on disk."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import subspace_angles
 
 from miburi.errors import InputError
-from miburi.retrieval import Index, Ranking, measures, merge
+from miburi.retrieval import Index, Ranking, dtw, measures, merge
 from miburi.retrieval.index import _draw
 from miburi.retrieval.jvh import bhattacharyya, jvh
 from miburi.retrieval.ranking import ranking
@@ -110,17 +112,44 @@ def test_msm_is_the_mean_of_the_canonical_angles(features, segments, query, inde
 def test_dtw_is_the_cheapest_path(features, query):
     segments = [("take0", 0, 0, 30), ("take0", 0, 7, 8), ("take1", 1, 100, 200), ("take2", 2, 0, 2)]
     index = Index.build(features, segments, dims=DIMS, samples=None)
-    for x in (query[:40], query[:1]):
+    for x in (query[:40], query[:1], query[:70]):
         want = [naive.dtw(x.astype(np.float64), frames_of(features, s)) for s in segments]
-        np.testing.assert_allclose(index.distances(x, "DTW"), want, rtol=1e-12)
+        np.testing.assert_allclose(index.distances(x, "DTW"), want, rtol=1e-9)
 
 
-def test_dtw_agrees_with_dtaidistance(features, segments, query):
+@settings(max_examples=30)
+@given(st.integers(1, 140), st.lists(st.integers(1, 9), min_size=1, max_size=6), st.integers(0, 999))
+def test_dtw_of_any_lengths(n, lengths, seed):
+    rng = np.random.default_rng(seed)
+    parts = [rng.normal(0, 1, (m, 9)).cumsum(axis=0) for m in lengths]
+    frames = np.concatenate(parts).astype(np.float32)
+    ends = np.cumsum([0, *lengths])
+    index = Index.build([frames], [("a", 0, a, b) for a, b in pairwise(ends)], dims=1, samples=None)
+    query = rng.normal(0, 1, (n, 9)).cumsum(axis=0)
+    want = [naive.dtw(query, frames[a:b].astype(np.float64)) for a, b in pairwise(ends)]
+    np.testing.assert_allclose(index.distances(query, "DTW"), want, rtol=1e-9)
+
+
+def test_dtw_agrees_with_dtaidistance(features, segments, query, whole):
     dtw_ndim = pytest.importorskip("dtaidistance.dtw_ndim")
-    index = Index.build(features, segments, dims=DIMS, samples=None)
     x = query.astype(np.float64)
     want = [dtw_ndim.distance(x, frames_of(features, s)) for s in segments]
-    np.testing.assert_allclose(index.distances(query, "DTW"), want, rtol=1e-6)
+    np.testing.assert_allclose(whole.distances(query, "DTW"), want, rtol=1e-6)
+    # of a sequence and itself squares cancel; what rounding leaves is far below a millimetre
+    np.testing.assert_allclose(whole.distances(frames_of(features, segments[4]), "DTW")[4], 0, atol=1e-6)
+
+
+@given(st.integers(1, 60), st.integers(1, 40), st.integers(0, 999))
+def test_dtw_bounds_are_below(n, m, seed):
+    rng = np.random.default_rng(seed)
+    x, y = rng.normal(0, 1, (n, 12)).cumsum(axis=0), rng.normal(0, 1, (m, 12)).cumsum(axis=0)
+    y = y.astype(np.float32)
+    known = dtw.prepare(y, np.array([0, m]))
+    true = naive.dtw(x, y.astype(np.float64)) ** 2
+    rest = dtw._rest(np.ascontiguousarray(x.T), known.low, known.high, 0.0)
+    short = dtw._columns(dtw._shortened(x, known.axes), np.square(x).sum(axis=1))
+    least = dtw._all(short, known.short, known.offsets)[0] ** 2
+    assert rest[0, 0] <= true * (1 + 1e-9) and least <= true * (1 + 1e-9) + 1e-9
 
 
 def test_mean_pose_is_the_distance_of_the_means(features, segments, query, index):

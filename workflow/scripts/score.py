@@ -18,7 +18,9 @@ def main(snakemake):
     keywords = keywords_of(segments, spans(read_annotations(snakemake.input.annotations), fps))
     queries = read_queries(snakemake.input.table)
     scores = [
-        row for path in snakemake.input.ranks for row in score(read_ranks(path), queries, segments, keywords)
+        row
+        for path in snakemake.input.ranks
+        for row in score(read_ranks(path), queries, segments, keywords, str(path))
     ]
     write_scores(snakemake.output[0], scores)
 

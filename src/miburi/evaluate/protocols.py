@@ -19,7 +19,7 @@ from miburi.errors import InputError
 from miburi.evaluate.queries import Query
 from miburi.evaluate.ranks import Ranks
 from miburi.evaluate.rows import names, read_rows
-from miburi.evaluate.statistics import chance_of_hit, chance_rank
+from miburi.evaluate.statistics import chance_first, chance_of_hit, chance_rank
 
 Path = str | os.PathLike[str]
 
@@ -40,12 +40,16 @@ class Score:
         1 if a relevant segment is among the first 10 (5).
     average_precision
         Mean precision at the relevant segments' ranks.
-    chance_rank, chance_hit10, chance_hit5
+    precision10, precision5
+        Share of the first 10 (5) that is relevant; of as many as there are, where fewer are ranked.
+    chance_rank, chance_first, chance_hit10, chance_hit5
         What a random order would give.
     seconds
         Measured time of the ranking.
     queries
         "simulated" or "recorded".
+    ranks
+        File of the rankings that this row was computed from.
     """
 
     experiment: str
@@ -63,11 +67,15 @@ class Score:
     hit10: int
     hit5: int
     average_precision: float
+    precision10: float
+    precision5: float
     chance_rank: float
+    chance_first: float
     chance_hit10: float
     chance_hit5: float
     seconds: float
     queries: str
+    ranks: str
 
 
 def score(
@@ -75,6 +83,7 @@ def score(
     queries: Sequence[Query],
     segments: Sequence[Segment],
     keywords: Sequence[frozenset[str]],
+    source: str = "",
 ) -> list[Score]:
     """Score the rankings of a measure.
 
@@ -86,6 +95,8 @@ def score(
         What was ranked, in the index's order.
     keywords
         Of each segment.
+    source
+        File of the rankings.
 
     Raises
     ------
@@ -95,7 +106,10 @@ def score(
     by_name = {q.query: q for q in queries}
     if ranks.order.shape[1] != len(segments):
         raise InputError(f"ranks of {ranks.order.shape[1]} segments, the index has {len(segments)}")
-    return [_score(ranks, k, _found(by_name, name), segments, keywords) for k, name in enumerate(ranks.query)]
+    return [
+        _score(ranks, k, _found(by_name, name), segments, keywords, source)
+        for k, name in enumerate(ranks.query)
+    ]
 
 
 def _found(by_name: Mapping[str, Query], name: str) -> Query:
@@ -105,7 +119,12 @@ def _found(by_name: Mapping[str, Query], name: str) -> Query:
 
 
 def _score(
-    ranks: Ranks, k: int, query: Query, segments: Sequence[Segment], keywords: Sequence[frozenset[str]]
+    ranks: Ranks,
+    k: int,
+    query: Query,
+    segments: Sequence[Segment],
+    keywords: Sequence[frozenset[str]],
+    source: str,
 ) -> Score:
     ranked = np.isfinite(ranks.score[k])
     order, distance = ranks.order[k][ranked], ranks.score[k][ranked]
@@ -133,11 +152,15 @@ def _score(
         hit10=int(r > 0 and at[0] <= 10),
         hit5=int(r > 0 and at[0] <= 5),
         average_precision=float((np.arange(1, r + 1) / at).mean()) if r else 0.0,
+        precision10=float(relevant[:10].mean()) if n else 0.0,
+        precision5=float(relevant[:5].mean()) if n else 0.0,
         chance_rank=chance_rank(n),
+        chance_first=chance_first(n, r),
         chance_hit10=chance_of_hit(n, r, 10),
         chance_hit5=chance_of_hit(n, r, 5),
         seconds=float(ranks.seconds[k]),
         queries=ranks.queries,
+        ranks=source,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +24,11 @@ def chance_rank(segments: int) -> float:
     return (segments + 1) / 2
 
 
+def chance_first(segments: int, relevant: int) -> float:
+    """Expected rank of the first of `relevant` segments in random order; 0 where there is none."""
+    return (segments + 1) / (relevant + 1) if relevant else 0.0
+
+
 def interval(values: ArrayLike, seed_name: object = 0, level: float = 0.95) -> tuple[float, float]:
     """Bootstrap interval of a mean (percentiles, 2000 draws); of fewer than two values, or equal ones, the mean."""
     x = np.asarray(values, dtype=np.float64)
@@ -40,7 +46,17 @@ def interval(values: ArrayLike, seed_name: object = 0, level: float = 0.95) -> t
     return float(found.low), float(found.high)
 
 
-def difference(one: Sequence[float], other: Sequence[float]) -> float:
-    """Wilcoxon's signed-rank p value of paired values; 1 where they are all equal."""
+class Difference(NamedTuple):
+    """Mean of paired differences, its bootstrap interval (95 %), and Wilcoxon's signed-rank p value."""
+
+    mean: float
+    low: float
+    high: float
+    p: float
+
+
+def difference(one: Sequence[float], other: Sequence[float], seed_name: object = 0) -> Difference:
+    """How much larger one measure's figures are than another's for the same queries; p is 1 where all are equal."""
     gap = np.asarray(one, dtype=np.float64) - np.asarray(other, dtype=np.float64)
-    return 1.0 if not np.any(gap) else float(wilcoxon(gap).pvalue)
+    p = float(wilcoxon(gap).pvalue) if np.any(gap) else 1.0
+    return Difference(float(gap.mean()), *interval(gap, ("difference", seed_name)), p)

@@ -16,20 +16,23 @@ import numpy as np
 from miburi import store
 from miburi.evaluate import printed
 from miburi.evaluate.protocols import Score
-from miburi.evaluate.statistics import interval
+from miburi.evaluate.statistics import difference, interval
 
 Row = dict[str, Any]
-NOT_YET = "GP-LVM is not implemented yet"
+REFERENCE = "DSPM(PCA)"
+"""The measure that [P] proposes: the others are compared with it, query by query."""
+NAIVE = "mean pose"
 NOT_RUN = "not among this run's measures"
 
 
 def table(name: str, scores: Sequence[Score], seed: int = 0) -> list[Row]:
-    """A table of [P].
+    """A table of [P], or one of ours beside them.
 
     Parameters
     ----------
     name
-        "table1" to "table5".
+        "table1" to "table5"; "differences1", "differences2": measures compared in pairs; "other_people": protocol
+        3, where the person shown is not ranked.
     scores
         Of the experiment that the table shows.
     seed
@@ -68,6 +71,7 @@ def _hits(name: str, scores: Sequence[Score], seed: int) -> list[Row]:
     )
     keywords = _ordered([s.keyword for s in scores], [r["keyword"] for r in paper])
     protocols = sorted({s.protocol for s in scores})
+    naive = [s for s in scores if s.measure == NAIVE]
     rows = []
     for protocol in protocols:
         for measure in measures:
@@ -81,6 +85,7 @@ def _hits(name: str, scores: Sequence[Score], seed: int) -> list[Row]:
                 rows.append(
                     _head(protocol, measure, keyword)
                     | _counted(here)
+                    | _naive_hits([s for s in naive if s.protocol == protocol and s.keyword == keyword], 1)
                     | {
                         "hit10_low": "",
                         "hit10_high": "",
@@ -88,13 +93,14 @@ def _hits(name: str, scores: Sequence[Score], seed: int) -> list[Row]:
                         "hit5_paper": there["users_hit_top5"] if there else "",
                         "users_paper": there["users"] if there else "",
                     }
-                    | _tail(measure, mine)
+                    | _tail(mine)
                 )
             rows.append(
                 _head(protocol, measure, "mean")
                 | _mean_hits(mine, seed)
+                | _naive_hits([s for s in naive if s.protocol == protocol], len(keywords))
                 | _mean_paper(printed_rows)
-                | _tail(measure, mine)
+                | _tail(mine)
             )
     return rows
 
@@ -103,9 +109,20 @@ def _head(protocol: int, measure: str, keyword: str) -> Row:
     return {"protocol": protocol, "measure": measure, "keyword": keyword}
 
 
-def _tail(measure: str, mine: Sequence[Score]) -> Row:
-    queries = ", ".join(sorted({s.queries for s in mine})) or "simulated"
-    return {"queries": queries, "note": "" if mine else NOT_YET if "GP-LVM" in measure else NOT_RUN}
+def _tail(mine: Sequence[Score]) -> Row:
+    return {
+        "queries": ", ".join(sorted({s.queries for s in mine})) or "simulated",
+        "ranks": ", ".join(sorted({s.ranks for s in mine})),
+        "note": "" if mine else NOT_RUN,
+    }
+
+
+def _naive_hits(naive: Sequence[Score], keywords: int) -> Row:
+    """Users per keyword that the naive measure serves."""
+    return {
+        "hit10_mean_pose": _round(sum(s.hit10 for s in naive) / keywords) if naive else "",
+        "hit5_mean_pose": _round(sum(s.hit5 for s in naive) / keywords) if naive else "",
+    }
 
 
 def _counted(here: Sequence[Score]) -> Row:
@@ -148,10 +165,15 @@ def _mean_paper(rows: Sequence[Mapping[str, str]]) -> Row:
 
 
 def _target_ranks(name: str, scores: Sequence[Score], seed: int) -> list[Row]:
-    """Table 2: mean rank of the clip that was shown, protocol 1."""
+    """Table 2: mean rank of the clip that was shown, protocol 1.
+
+    Clips of one class by one person are near copies of each other, so beside it stands the mean rank of the first
+    clip that has the keyword (`first`).
+    """
     paper = printed.table(name)
     theirs = {(r["measure"], r["keyword"]): float(r["mean_rank_of_target"]) for r in paper}
     shown = [s for s in scores if s.protocol == 1]
+    naive = [s for s in shown if s.measure == NAIVE]
     measures = _ordered(
         [s.measure for s in shown] + [r["measure"] for r in paper], [r["measure"] for r in paper]
     )
@@ -167,15 +189,95 @@ def _target_ranks(name: str, scores: Sequence[Score], seed: int) -> list[Row]:
                 {
                     "measure": measure,
                     "keyword": keyword,
-                    "mean_rank": _round(float(np.mean([s.rank for s in here]))) if here else "",
+                    "mean_rank": _mean(here, "rank"),
                     "mean_rank_low": _round(low),
                     "mean_rank_high": _round(high),
                     "mean_rank_paper": _round(float(np.mean(there))) if there else "",
-                    "chance_rank": _round(float(np.mean([s.chance_rank for s in here]))) if here else "",
+                    "mean_rank_mean_pose": _mean(naive, "rank", keyword),
+                    "chance_rank": _mean(here, "chance_rank"),
+                    "mean_first": _mean(here, "first"),
+                    "mean_first_mean_pose": _mean(naive, "first", keyword),
+                    "chance_first": _mean(here, "chance_first"),
                     "segments": here[0].segments if here else "",
                     "segments_paper": printed.SEGMENTS[name],
                 }
-                | _tail(measure, mine)
+                | _tail(mine)
+            )
+    return rows
+
+
+def _mean(scores: Sequence[Score], field: str, keyword: str = "mean") -> float | str:
+    """Mean of a field over the scores of a keyword, or all."""
+    values = [float(getattr(s, field)) for s in scores if keyword in (s.keyword, "mean")]
+    return _round(float(np.mean(values))) if values else ""
+
+
+_COMPARED = ("hit10", "hit5", "rank", "first", "average_precision", "precision10", "precision5")
+
+
+def _differences(name: str, scores: Sequence[Score], seed: int) -> list[Row]:
+    """Each measure minus the reference for the same queries, with a paired bootstrap interval."""
+    by_query = {(s.measure, s.query): s for s in scores}
+    rows = []
+    for protocol in sorted({s.protocol for s in scores}):
+        for measure in dict.fromkeys(s.measure for s in scores):
+            mine = [s for s in scores if (s.protocol, s.measure) == (protocol, measure)]
+            theirs = [by_query[REFERENCE, s.query] for s in mine if (REFERENCE, s.query) in by_query]
+            if measure == REFERENCE or len(theirs) < len(mine):
+                continue
+            for field in _COMPARED:
+                if field == "rank" and protocol != 1:
+                    continue
+                one, other = ([float(getattr(s, field)) for s in side] for side in (mine, theirs))
+                found = difference(one, other, (seed, name, protocol, measure, field))
+                rows.append(
+                    {
+                        "protocol": protocol,
+                        "measure": measure,
+                        "against": REFERENCE,
+                        "figure": field,
+                        "value": _round(float(np.mean(one))),
+                        "value_against": _round(float(np.mean(other))),
+                        "difference": _round(found.mean),
+                        "difference_low": _round(found.low),
+                        "difference_high": _round(found.high),
+                        "wilcoxon_p": f"{found.p:.2g}",
+                        "paired_queries": len(mine),
+                    }
+                    | _tail([*mine, *theirs])
+                )
+    return rows
+
+
+def _other_people(name: str, scores: Sequence[Score], seed: int) -> list[Row]:
+    """Protocol 3: one person's clip is imitated, only other people's clips are ranked."""
+    mine_all = [s for s in scores if s.protocol == 3]
+    naive = [s for s in mine_all if s.measure == NAIVE]
+    rows = []
+    for measure in dict.fromkeys(s.measure for s in mine_all):
+        mine = [s for s in mine_all if s.measure == measure]
+        for keyword in [*dict.fromkeys(s.keyword for s in mine), "mean"]:
+            here = [s for s in mine if keyword in (s.keyword, "mean")]
+            low, high = interval([s.average_precision for s in here], (seed, name, measure, keyword))
+            rows.append(
+                {
+                    "measure": measure,
+                    "keyword": keyword,
+                    "precision5": _mean(here, "precision5"),
+                    "precision10": _mean(here, "precision10"),
+                    "mean_average_precision": _mean(here, "average_precision"),
+                    "mean_average_precision_low": _round(low),
+                    "mean_average_precision_high": _round(high),
+                    "mean_first": _mean(here, "first"),
+                    "precision5_mean_pose": _mean(naive, "precision5", keyword),
+                    "precision10_mean_pose": _mean(naive, "precision10", keyword),
+                    "mean_average_precision_mean_pose": _mean(naive, "average_precision", keyword),
+                    "chance_precision": _round(float(np.mean([s.relevant / s.segments for s in here]))),
+                    "chance_first": _mean(here, "chance_first"),
+                    "segments": max(s.segments for s in here),
+                    "users": len({s.user for s in here}),
+                }
+                | _tail(here)
             )
     return rows
 
@@ -200,7 +302,7 @@ def _seconds(name: str, scores: Sequence[Score], seed: int) -> list[Row]:
                     "implementation_paper": r.get("implementation", ""),
                     "segments_paper": printed.SEGMENTS[name] if r else "",
                 }
-                | _tail(measure, mine)
+                | _tail(mine)
             )
     return rows
 
@@ -211,6 +313,9 @@ _TABLES: dict[str, Callable[[str, Sequence[Score], int], list[Row]]] = {
     "table3": _hits,
     "table4": _seconds,
     "table5": _seconds,
+    "differences1": _differences,
+    "differences2": _differences,
+    "other_people": _other_people,
 }
 
 

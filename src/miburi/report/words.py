@@ -22,6 +22,20 @@ TABLES = {
         "Table 4 of [P]: seconds per query, experiment 1",
         "Median over all queries, one core of the machine that made this page; the paper's machine is of 2008.",
     ),
+    "differences1": (
+        "Measures compared in pairs, experiment 1",
+        "Each measure minus DSPM(PCA) for the same queries, with a paired bootstrap interval (95 %) and Wilcoxon's "
+        "signed-rank p. Ranks: smaller is better; everything else: larger is better.",
+    ),
+    "differences2": (
+        "Measures compared in pairs, experiment 2",
+        "As for experiment 1.",
+    ),
+    "other_people": (
+        "Only other people's clips are ranked",
+        "Protocol 3: a user imitates a clip, and all clips of the person shown are left out. Precision at 5 and 10 "
+        "and mean average precision, beside the naive measure and chance.",
+    ),
     "table5": ("Table 5 of [P]: seconds per query, experiment 2", "As table 4, for the larger database."),
     "puppeteers": (
         "Two puppeteers: our simulated users beside logs of another origin",

@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from miburi import store
 from miburi.errors import InputError
 from miburi.motion import Floats
-from miburi.retrieval import latent, nearest, subspace
-from miburi.retrieval.dtw import dtw
+from miburi.retrieval import dtw, latent, nearest, subspace
 from miburi.retrieval.jvh import bhattacharyya, jvh
 from miburi.retrieval.ranking import Ranking, ranking
 
@@ -107,6 +106,10 @@ class Index:
     @cached_property
     def _coarse(self) -> nearest.Coarse:
         return nearest.coarse(self.mean, self.basis, self.frames, self.offsets)
+
+    @cached_property
+    def _sequences(self) -> dtw.Sequences:
+        return dtw.prepare(self.frames, self.offsets)
 
     @cached_property
     def _bases_side_by_side(self) -> Floats:
@@ -252,7 +255,7 @@ class Index:
         plain = measure.removesuffix("+Jvh")
         distance: Floats
         if plain == "DTW":
-            distance = dtw(self._drawn(query), self._blocks, self.offsets)
+            distance = dtw.distances(self._sequences, self._drawn(query))
         elif plain == "mean pose":
             distance = np.sqrt(np.square(self.mean - query.mean(axis=0)).sum(axis=1))
         elif plain in _LATENT:
@@ -276,6 +279,8 @@ class Index:
     def _first(self, query: Floats, k: int, measure: str) -> Floats | None:
         """Distances of the first k and ties, infinity for the rest; None: there is no short cut."""
         plain, with_jvh = measure.removesuffix("+Jvh"), measure.endswith("+Jvh")
+        if measure == "DTW" and k < len(self):
+            return dtw.first(self._sequences, self._drawn(query), k)
         if plain not in ("DSPM(PCA)", "MSM") or k >= len(self):
             return None
         mean, basis = subspace.fit(query, self.dims)
