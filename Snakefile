@@ -38,5 +38,6 @@ rule all:
         FLOW.figures(),
         FLOW.films(),
         FLOW.searches(),
+        FLOW.segmentations(),
         "results/metrics.json",
         "results/report.html",
