@@ -39,5 +39,6 @@ rule all:
         FLOW.films(),
         FLOW.searches(),
         FLOW.comparisons(),
+        FLOW.segmentations(),
         "results/metrics.json",
         "results/report.html",

@@ -1,9 +1,9 @@
-"""Seconds to read recordings, beside other readers of the same files.
+"""Seconds to read recordings and to make features of them, beside readers of the same files.
 
     python benchmarks/bench_formats.py [--rounds N]
 
-The text is made here (random angles; the time does not depend on what they are): BVH of 31 joints, 96
-channels and 6000 frames, AMC of 10 000 frames with the 62 values of a CMU skeleton's frame. Ours gives a
+The text is made here (random angles; the time does not depend on what they are): BVH of a body of 31 joints,
+96 channels and 6000 frames, once more with 100 joints and 303 channels, AMC of 10 000 frames with the 62 values of a CMU skeleton's frame. Ours gives a
 checked Motion (quaternions, metres); the others give what they give. Readers take turns, medians of one
 thread; peers that are not installed are named as absent.
 """
@@ -23,9 +23,13 @@ from pathlib import Path
 
 import numpy as np
 
+from miburi.figures import PERSON
 from miburi.formats import asf_amc, bvh
 from miburi.kinematics import euler
 from miburi.motion import Motion, Skeleton
+from miburi.retrieval import features
+
+FAST = ("miburi", "miburi, to 42 features", "numpy.loadtxt alone", "pybvh")
 
 # bones of a CMU skeleton and their degrees of freedom
 FREEDOM = {
@@ -37,13 +41,14 @@ FREEDOM = {
 
 
 def write_bvh(path: Path, frames: int = 6000, joints: int = 31) -> None:
-    """A chain of joints that turn at random."""
+    """A body whose joints turn at random, with a chain of joints that matter to nobody on its head."""
     rng = np.random.default_rng(0)
-    parents = np.arange(joints) - 1
+    more = joints - len(PERSON)
+    parents = [*PERSON.parents, PERSON.index("neck"), *range(len(PERSON), joints - 1)]
     skeleton = Skeleton(
-        tuple(f"joint{j}" for j in range(joints)),
-        parents,
-        np.tile([0.0, 0.1, 0.0], (joints, 1)),
+        PERSON.joints + tuple(f"hair{j}" for j in range(more)),
+        np.array(parents),
+        np.concatenate([PERSON.offsets, np.tile([0.0, 0.01, 0.0], (more, 1))]),
         ends=np.array([joints - 1]),
         end_offsets=np.array([[0.0, 0.1, 0.0]]),
     )
@@ -89,12 +94,22 @@ def peers(path: Path) -> dict[str, Callable[[], object] | None]:
 
     return {
         "miburi": lambda: bvh.read(path),
-        "miburi, places too": lambda: bvh.read(path).positions(),
+        "miburi, to 42 features": lambda: features(bvh.read(path)),
         "numpy.loadtxt alone": lambda: np.loadtxt(path, skiprows=first_row(path)),
         "pybvh": of("pybvh", "read_bvh_file", lambda: str(path)),
         "bvhio": of("bvhio", "readAsBvh", lambda: str(path)),
+        "upc-pymotion": pymotion(path),
         "bvh": of("bvh", "Bvh", path.read_text),
     }
+
+
+def pymotion(path: Path) -> Callable[[], object] | None:
+    """upc-pymotion's reader, or None."""
+    try:
+        reader = importlib.import_module("pymotion.io.bvh").BVH
+    except ImportError:
+        return None
+    return lambda: reader().load(str(path))
 
 
 def first_row(path: Path) -> int:
@@ -123,16 +138,21 @@ def main() -> None:
     rounds = parser.parse_args().rounds
     with tempfile.TemporaryDirectory() as folder:
         path, asf, amc = (Path(folder) / n for n in ("a.bvh", "a.asf", "a.amc"))
-        write_bvh(path)
         write_acclaim(asf, amc)
-        print(f"BVH, 6000 frames x 96 channels, {path.stat().st_size / 1e6:.1f} MB")
-        calls = peers(path)
-        found = medians(calls, rounds)
-        for name in calls:
-            if name in found:
-                print(f"  {name:<22} {found[name]:7.4f} s  {found[name] / found['miburi']:6.2f} x miburi")
-            else:
-                print(f"  {name:<22} not installed")
+        for joints in (31, 100):
+            write_bvh(path, joints=joints)
+            size = path.stat().st_size / 1e6
+            print(f"BVH, 6000 frames x {3 * joints + 3} channels, {size:.1f} MB")
+            calls = peers(path)
+            if joints > 31:
+                calls = {name: calls[name] for name in calls if name in FAST}
+            found = medians(calls, rounds)
+            for name in calls:
+                if name in found:
+                    ratio = found[name] / found["miburi, to 42 features"]
+                    print(f"  {name:<22} {found[name]:7.4f} s  {ratio:6.2f} x miburi, to 42 features")
+                else:
+                    print(f"  {name:<22} not installed")
         print(f"AMC, 10 000 frames x 62 values, {amc.stat().st_size / 1e6:.1f} MB")
         skeleton = asf_amc.read_asf(asf)
         for name, s in medians({"miburi": lambda: asf_amc.read(amc, skeleton=skeleton)}, rounds).items():

@@ -54,13 +54,25 @@ class Group(Model):
     cut: Literal["PPCA", "PCA", "whole"] = Field(
         "PPCA", description="How takes become segments: by segmentation, or each take is one."
     )
+    bounds: list[str] = Field(
+        [],
+        description="Patterns of takes whose annotations cover them whole: segmentation is scored on where these change.",
+    )
+    cut_points: str = Field(
+        "",
+        description="File of a take's cut points set by a person (earliest, best, latest acceptable frame), before `bounds`; `{take}` and `{recordings}` are filled in.",
+    )
     fps: float | None = Field(
         None, gt=0, description="Frames per second, where recordings name none or a wrong rate."
     )
     rates: dict[str, float] = Field(
         {}, description="Take → frames per second, where single headers are wrong."
     )
-    skip_frames: int = Field(0, ge=0, description="Frames left out at the start, such as a rest pose.")
+    skip_frames: int = Field(0, ge=0, description="Frames left out at the start in any case.")
+    drop_rest_pose: bool = Field(
+        True,
+        description="Leave out rest poses that a program put before the motion, told by the impossible speed at which they are left.",
+    )
     unit: float | None = Field(
         None, gt=0, description="Metres per unit of the recordings; absent: found by the size of the body."
     )

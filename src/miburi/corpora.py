@@ -45,6 +45,7 @@ def groups(name: str, corpus: settings.Corpus, seed: int) -> list[settings.Group
                 folder=folder,
                 files=["*.bvh"],
                 annotations=f"{folder}/annotations.tsv",
+                bounds=["*"],
                 rates=headers,
                 skip_frames=rest,
             )

@@ -7,6 +7,7 @@ import re
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -27,8 +28,9 @@ _READ = (
     "calibration",
     "columns",
     "skip_frames",
+    "drop_rest_pose",
 )
-_ANNOTATED = ("folder", "keyword", "keywords", "annotations", "labels", "label_unit", "stand_ins")
+_ANNOTATED = ("folder", "keyword", "keywords", "annotations", "labels", "label_unit", "stand_ins", "joints")
 
 CHANGES = ("rs", "sp", "pr")
 """The changes of [H], fig. 6."""
@@ -162,6 +164,29 @@ class Flow:
         if self.corpus(corpus).kind == "hand":
             return [takes.label_file(t, groups[t.group]) for t in self.takes[corpus]]
         return sorted({g[key] for g in groups for key in ("annotations", "keywords") if g[key]})
+
+    def bounded(self, corpus: str) -> dict[str, dict[str, str]]:
+        """Takes that segmentation is scored on: how each was cut, and its file of cut points, if any."""
+        groups = self._groups[corpus]
+        found = {}
+        for take in self.takes[corpus]:
+            group = groups[take.group]
+            file = takes.filled(group["cut_points"], take, group)
+            points = file if file and Path(file).exists() else ""
+            named = any(fnmatchcase(take.name, pattern) for pattern in group["bounds"])
+            if group["cut"] != "whole" and (points or named):
+                found[take.name] = {"method": group["cut"], "cut_points": points}
+        return found
+
+    def cut_points(self, corpus: str) -> list[str]:
+        """Files of cut points of a corpus."""
+        return [b["cut_points"] for b in self.bounded(corpus).values() if b["cut_points"]]
+
+    def segmentations(self) -> list[str]:
+        """Agreement of cuts with people's, for each corpus that has any, and lengths of all segments."""
+        bodies = self.names("body")
+        found = [f"results/{c}/segmentation.csv" for c in bodies if self.bounded(c)]
+        return found + [f"results/{c}/segment_lengths.csv" for c in bodies]
 
     def per_take(self, corpus: str, shard: str, key: str) -> dict[str, Any]:
         """A group's setting for each take of a shard where it is not empty."""

@@ -6,6 +6,7 @@ A group's settings come as a mapping, the keys of `config.Group`, with `{recordi
 from __future__ import annotations
 
 import csv
+import logging
 import os
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
@@ -14,8 +15,11 @@ from miburi import formats
 from miburi.errors import InputError
 from miburi.formats.annotations import Annotation, read_annotations
 from miburi.formats.labels import read_labels
+from miburi.formats.plausibility import rest_frames
 from miburi.motion import Motion
 from miburi.takes import COMPANIONS, Group, Take, filled, label_file, matched
+
+log = logging.getLogger(__name__)
 
 
 def read_take(take: Take, group: Group) -> Motion:
@@ -27,7 +31,11 @@ def read_take(take: Take, group: Group) -> Motion:
     motion = formats.read(take.recording, corpus=SimpleNamespace(**chosen))
     if group["skip_frames"] >= len(motion):
         raise InputError(f"{take.recording}: has {len(motion)} frames, skip_frames is {group['skip_frames']}")
-    return motion[group["skip_frames"] :] if group["skip_frames"] else motion
+    motion = motion[group["skip_frames"] :] if group["skip_frames"] else motion
+    if group["drop_rest_pose"] and motion.angles is None and (rest := rest_frames(motion)):
+        log.info("%s: %d leading frames are a rest pose and left out", take.recording, rest)
+        return motion[rest:]
+    return motion
 
 
 def annotate_hand(

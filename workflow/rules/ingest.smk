@@ -35,8 +35,8 @@ rule annotations:
     benchmark:
         "results/benchmarks/annotations/{corpus}.tsv"
     resources:
-        mem_mb=megabytes(500),
-        runtime=minutes(5, 0.01),
+        mem_mb=megabytes(600, 30),
+        runtime=minutes(5, 0.1),
     params:
         reading=lambda wildcards: FLOW.to_annotate(wildcards.corpus),
         code=code("annotations.py"),

@@ -22,3 +22,48 @@ rule segment:
         code=code("segment.py"),
     script:
         "../scripts/segment.py"
+
+
+rule segment_lengths:
+    input:
+        segments=lambda wildcards: FLOW.of_shards(wildcards.corpus, "segments"),
+        takes="results/{corpus}/takes.csv",
+    output:
+        "results/{corpus}/segment_lengths.csv",
+    log:
+        "results/logs/segment_lengths/{corpus}.log",
+    benchmark:
+        "results/benchmarks/segment_lengths/{corpus}.tsv"
+    resources:
+        mem_mb=megabytes(600),
+        runtime=minutes(5),
+    params:
+        code=code("segment_lengths.py"),
+    script:
+        "../scripts/segment_lengths.py"
+
+
+rule segmentation:
+    input:
+        segments=lambda wildcards: FLOW.of_shards(wildcards.corpus, "segments"),
+        takes="results/{corpus}/takes.csv",
+        annotations="results/{corpus}/annotations.tsv",
+        points=lambda wildcards: FLOW.cut_points(wildcards.corpus),
+    output:
+        "results/{corpus}/segmentation.csv",
+    log:
+        "results/logs/segmentation/{corpus}.log",
+    benchmark:
+        "results/benchmarks/segmentation/{corpus}.tsv"
+    resources:
+        mem_mb=megabytes(600),
+        runtime=minutes(5),
+    params:
+        bounded=lambda wildcards: FLOW.bounded(wildcards.corpus),
+        people=lambda wildcards: (
+            "simulated" if FLOW.simulated(wildcards.corpus) else "recorded"
+        ),
+        seed=CONFIG.seed,
+        code=code("segmentation.py"),
+    script:
+        "../scripts/segmentation.py"

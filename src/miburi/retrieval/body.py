@@ -4,21 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from miburi.conventions import find_joints
 from miburi.errors import InputError
 from miburi.figures import BODY_JOINTS, PERSON
-from miburi.kinematics import trunk_frame, unit, yaw_pitch_roll
+from miburi.kinematics import trunk_frame, yaw_pitch_roll
 from miburi.motion import Floats, Motion
 
 WIDTH = 3 * len(BODY_JOINTS) + 3
 YAW = 3 * len(BODY_JOINTS)
 """Column of the yaw; pitch and roll follow."""
 
-# Parent → child, as on the puppet: what lies between two of these joints (spine, clavicles) is one bone.
-_BONES = tuple((PERSON.joints[p], PERSON.joints[j]) for j, p in enumerate(PERSON.parents) if p >= 0)
+# The thirteen joints and the waist before them, as on the puppet: what lies between two of these (spine,
+# clavicles) is one bone.
+_JOINTS = ("waist", *BODY_JOINTS)
+_PARENTS = np.array(
+    [
+        _JOINTS.index(PERSON.joints[PERSON.parents[PERSON.index(name)]]) if name != "waist" else -1
+        for name in _JOINTS
+    ]
+)
+_OFFSETS = np.array([PERSON.offsets[PERSON.index(name)] for name in _JOINTS])
 
 
 def names() -> list[str]:
@@ -26,16 +35,38 @@ def names() -> list[str]:
     return [f"{joint}_{axis}" for joint in BODY_JOINTS for axis in "xyz"] + ["yaw", "pitch", "roll"]
 
 
-def _on_person(places: dict[str, Floats], frame: Floats) -> dict[str, Floats]:
-    """Where PERSON's joints are in the trunk's frame when its bones point as those of the person recorded."""
-    mapped = {"waist": np.zeros((len(frame), 3))}
-    for parent, child in _BONES:
-        offset = PERSON.offsets[PERSON.index(child)]
-        length = float(np.linalg.norm(offset))
-        bone = np.einsum("tba,tb->ta", frame, places[child] - places[parent])
-        # two joints on one spot have no direction: PERSON's own then
-        mapped[child] = mapped[parent] + length * unit(bone, fallback=offset / length)
-    return mapped
+@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator, unused-ignore]
+def _fill(
+    positions: Floats,
+    where: NDArray[np.int64],
+    frame: Floats,
+    parents: NDArray[np.int64],
+    offsets: Floats,
+    mapped: bool,
+    x: NDArray[np.float32],
+) -> None:
+    """Fill the first 39 columns: joints from the waist in the trunk's frame, as they are or, mapped, with the
+    recorded bones' directions and the lengths of `offsets`. A parent stands before its children."""
+    place = np.zeros((len(parents), 3))
+    for t in range(len(x)):
+        for k in range(1, len(parents)):
+            p = parents[k] if mapped else 0
+            length, square = 0.0, 0.0
+            for a in range(3):
+                bone = 0.0
+                for b in range(3):
+                    bone += frame[t, b, a] * (positions[t, where[k], b] - positions[t, where[p], b])
+                place[k, a] = bone
+                square += bone * bone
+                length += offsets[k, a] * offsets[k, a]
+            if mapped:
+                # two joints on one spot have no direction: that of the offset then
+                scale = np.sqrt(length / square) if square > 1e-18 else 0.0
+                for a in range(3):
+                    bone = place[k, a] * scale if scale > 0.0 else offsets[k, a]
+                    place[k, a] = place[p, a] + bone
+            for a in range(3):
+                x[t, 3 * (k - 1) + a] = place[k, a]
 
 
 def _followed(angles: Floats) -> Floats:
@@ -97,15 +128,9 @@ def features(
     if len(motion) == 0:
         return np.zeros((0, WIDTH), dtype=np.float32)
     positions = motion.positions()
-    places = {name: positions[:, where[name]] for name in ("waist", *BODY_JOINTS)}
-    frame = trunk_frame(places["l_hip"], places["r_hip"], places["waist"], places["neck"])
-    if mapped:
-        body = _on_person(places, frame)
-    else:
-        body = {n: np.einsum("tba,tb->ta", frame, places[n] - places["waist"]) for n in BODY_JOINTS}
+    frame = trunk_frame(*(positions[:, where[j]] for j in ("l_hip", "r_hip", "waist", "neck")))
     x = np.empty((len(motion), WIDTH), dtype=np.float32)
-    for k, name in enumerate(BODY_JOINTS):
-        x[:, 3 * k : 3 * k + 3] = body[name]
+    _fill(positions, np.array([where[j] for j in _JOINTS]), frame, _PARENTS, _OFFSETS, mapped, x)
     angles = _followed(yaw_pitch_roll(frame))
     angles[:, 0] -= angles[0, 0]
     x[:, YAW:] = angle_weight * angles
