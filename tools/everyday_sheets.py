@@ -17,7 +17,7 @@ from miburi.perform.bodies.programme import Clip, Plan
 from miburi.render.sheets import Strip, evenly, sheet
 
 ROOT = Path(__file__).parents[1]
-COLUMNS, ROWS, SIZE = 8, 2, 112
+COLUMNS, ROWS, SIZE = 8, 2, 144
 
 
 def main(folder: str = str(ROOT / "docs" / "everyday"), *keywords: str) -> None:
