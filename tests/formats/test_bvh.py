@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from scipy.spatial.transform import Rotation
 
 from miburi.errors import InputError
 from miburi.figures import HAND, PERSON
-from miburi.formats import angles, bvh, text
+from miburi.formats import angles, bvh, numerals, text
 from miburi.kinematics import euler, hand_rotations
 from miburi.motion import Motion, Skeleton
 
@@ -409,3 +410,14 @@ def test_rotations_are_products_in_the_order_given(values, order):
         Rotation.from_quat(q[0, 1]).as_matrix(), naive.about("y", values[2])[:3, :3], atol=1e-12
     )
     np.testing.assert_allclose(np.linalg.norm(q, axis=-1), 1, atol=1e-12)
+
+
+@given(arrays(np.float64, (7, 3), elements=st.floats(-1e8, 1e8)), st.sampled_from([1.0, 1e-9, 1e5]))
+def test_numbers_are_written_as_percent_formatting_does(table: np.ndarray, scale: float) -> None:
+    table = table * scale
+    got = [line.split(" ") for line in numerals.six(table).decode().splitlines()]
+    for row, words in zip(table.tolist(), got, strict=True):
+        for value, word in zip(row, words, strict=True):
+            twin = "%.6f" % value
+            assert len(word.partition(".")[2]) == 6 and word != "-0.000000"
+            assert word == twin or abs(float(word) - value) <= 1e-6 + 1e-15 * abs(value)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from miburi import store
 from miburi.errors import InputError
-from miburi.formats import angles, text, units
+from miburi.formats import angles, numerals, text, units
 from miburi.formats.bvh_header import MARK, Header, parse
 from miburi.motion import Floats, Motion, Skeleton
 
@@ -220,10 +220,7 @@ def write(path: text.File, motion: Motion) -> None:
         if k and motion.translations is not None:
             columns.append(100 * (motion.translations[:, j] + s.offsets[j]))
         columns.append(turns[:, k])
-    table = np.hstack(columns) + 0.0  # no −0
-    row = " ".join(["%.6f"] * table.shape[1])
-    body = "\n".join(row % tuple(frame) for frame in table.tolist())
-    data = ("\n".join(lines) + "\n" + body + "\n").encode()
+    data = ("\n".join(lines) + "\n").encode() + numerals.six(np.hstack(columns))
     with store.replaced(path) as temporary:
         temporary.write_bytes(gzip.compress(data, 6, mtime=0) if str(path).lower().endswith(".gz") else data)
 

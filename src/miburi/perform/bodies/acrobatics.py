@@ -403,7 +403,8 @@ def cartwheel(b: Score) -> Span:
     t += step
     first, second = lead + 0.52 * k, lead + 0.95 * k
     gap = b.vary(0.23, 0.012)
-    far = (0.45, -0.70, 0.0)
+    straight = b.way("cartwheel", "straight", "straight", "bent") == "straight"
+    far = (0.45, -0.70, 0.0) if straight else (0.34, -0.58, 0.2)
     leg(b, other, t - 0.2 * step, t + 1.2 * gap, far, 45.0)
     palms(b, side, t - 0.05, t + gap, 0.0, first, 0.8 * turned)
     b.trunk(t, t + 2 * gap, -4.0)
@@ -480,7 +481,7 @@ def _kick_up(b: Score, ahead: float, side: str) -> float:
     b.trunk(t, t + down, 4.0)
     b.look(t, t + down, -32.0)
     t += down
-    swing = b.beat(0.4)
+    swing = b.beat(0.46)
     tiptoe(b, t - 0.1, t + 0.15 * swing, 50.0, side)
     lift(b, side, t + 0.15 * swing)
     leg(b, other, t, t + swing, (0.03, -0.83, -0.1), 45.0)
@@ -501,7 +502,7 @@ def _come_down(b: Score, t: float, ahead: float, side: str) -> float:
     k, who = b.who.height / 1.75, b.who
     other = b.other(side)
     palm = (0.0, WRIST * k, ahead)
-    swing = b.beat(0.42)
+    swing = b.beat(0.5)
     leg(b, side, t, t + swing, (0.03, -0.76, 0.36), 20.0)
     root(b, t, t + swing, on_hands(b, palm, (0.0, 145.0, 0.0), (2.0, 0.0, 0.0), 0.95, 0.4), through=True)
     b.turn(t, t + swing, 0.0, 145.0, 0.0, through=True, even=True)

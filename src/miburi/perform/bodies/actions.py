@@ -35,8 +35,9 @@ def squats(b: Score, times: int) -> Span:
     """Knee bends with the arms ahead, at the hips or behind the head."""
     who, k = b.who, b.who.height / 1.75
     steps.stand(b, b.stance("l", 1.5), b.stance("r", 1.5), yaws=(8.0, -8.0))
-    arms = b.way("squats", "ahead", "ahead", "swing", "hips", "head")
-    depth = min(max(b.vary(1.1, 0.15) * who.size, 0.7), 1.4) * who.thigh
+    arms = b.way("squats", "ahead", "ahead", "swing", "hips", "head", "out")
+    low = b.way("depth", "half", "half", "deep") == "deep" and who.age < 60
+    depth = min(max(b.vary(1.55 if low else 1.1, 0.12) * who.size, 0.7), 1.7) * who.thigh
     t = b.now
     if arms in ("hips", "head"):
         ready = b.beat(0.5 if arms == "hips" else 0.9)
@@ -58,17 +59,20 @@ def squats(b: Score, times: int) -> Span:
         b.turn(t, t + down, 0.0, 17.0 * share, 0.0)
         b.trunk(t, t + down, 15.0 * share)
         b.look(t, t + down, -18.0 * share)
-        heel = b.vary(19.0, 4.0) * share
+        heel = b.vary(19.0, 4.0) * share**1.5
         for side in SIDES:
             toes = b.last(f"{side}_sole").value[0]
             b.move(f"{side}_sole", t + 0.3 * down, t + down, (toes, max(heel, 3.0)))
             b.move(f"{side}_sole", t + down + hold, t + down + hold + 0.7 * up, (toes, 0.0))
+        if arms == "out":
+            for side in SIDES:
+                b.reach(side, t, t + down, (0.45, -0.8, -0.05), arc=0.0)
         if arms in ("ahead", "swing"):
             for side in SIDES:
                 b.reach(side, t, t + down, (-0.05, 0.3 * share - 0.1, 0.88), arc=0.05)
         t += down + hold
         b.rise(t, t + up)
-        if arms == "swing":
+        if arms in ("swing", "out"):
             b.relax(t, t + up)
         elif arms == "ahead":
             for side in SIDES:
