@@ -278,7 +278,7 @@ class Flow:
             f"results/{corpus}/film/{name}{ending}"
             for corpus, name in self.film_names()
             for ending in (".mp4", "_sheet.png")
-        ]
+        ] + [f"results/{s.corpus}/compared/{name}.mp4" for name, s in self.config.strings.items()]
 
     def logs(self, corpus: str) -> dict[str, str]:
         """Puppet logs that are ranked in a corpus: name → path. data/puppet serves every corpus."""

@@ -198,12 +198,13 @@ def _films(paths: Paths, about: Mapping[str, Mapping[str, Any]]) -> list[dict[st
     found = []
     for path in films:
         kind = "simulated" if about[corpus_of(path)]["simulated"] else "recorded"
+        compared = ", recorded and put end to end and generated" if "compared" in Path(path).parts else ""
         sheet = path.replace(".mp4", "_sheet.png")
         found.append(
             {
                 "source": embedded(path) if carried else str(Path(path).relative_to("results")),
                 "inside": carried,
-                "alt": f"{Path(path).stem.replace('_', ' ')}, from {kind} {corpus_of(path)}",
+                "alt": f"{Path(path).stem.replace('_', ' ')}, from {kind} {corpus_of(path)}{compared}",
                 "sheet": embedded(sheet) if carried and Path(sheet).is_file() and sheet in paths else "",
             }
         )
