@@ -107,8 +107,9 @@ export class Stage {
     this.slider.step = "0.01";
     this.slider.setAttribute("aria-label", "Time in seconds");
     this.slider.addEventListener("input", () => {
+      const wanted = Number(this.slider.value); // stopping the clock moves the slider to where the clock is
       this.clock.play(false);
-      this.clock.seek(Number(this.slider.value));
+      this.clock.seek(wanted);
     });
     this.timeText = document.createElement("output");
     this.timeText.className = "time";

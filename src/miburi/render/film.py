@@ -10,7 +10,6 @@ from pathlib import Path
 
 import imageio_ffmpeg
 import numpy as np
-
 from PIL import Image
 
 from miburi import store
@@ -154,7 +153,9 @@ def _animate(path: str | os.PathLike[str], pictures: Iterator[Picture], fps: flo
     # whole milliseconds that add up: a rate of 30 is 33, 34, 33 … ms
     ends = [round(1000 * (k + 1) / fps) for k in range(len(rest) + 1)]
     durations = [b - a for a, b in zip([0, *ends], ends, strict=False)]
-    first.save(path, "WEBP", save_all=True, append_images=rest, duration=durations, loop=0, quality=60, method=4)
+    first.save(
+        path, "WEBP", save_all=True, append_images=rest, duration=durations, loop=0, quality=60, method=4
+    )
     return len(durations)
 
 
