@@ -15,11 +15,11 @@ def take(labels: str, start: float) -> tuple[np.ndarray, list[tuple[int, int, st
 
 def test_the_recording_that_shows_most_of_the_string_begins_where_it_does() -> None:
     takes = [take("r rs s sr r", 0.0), take("x p ps s sr r rp", 100.0)]
-    angles, intervals = longest_match(takes, "r rp p ps s sr r".split())
+    angles, intervals = longest_match(takes, ["r", "rp", "p", "ps", "s", "sr", "r"])
     assert angles[0, 0] == 103.0
     assert len(angles) == 18
     assert intervals[0] == (0, 3, "p")
-    assert [label for _, _, label in intervals] == "p ps s sr r rp".split()
+    assert [label for _, _, label in intervals] == ["p", "ps", "s", "sr", "r", "rp"]
 
 
 def test_a_string_that_nobody_recorded_is_shown_from_the_beginning() -> None:

@@ -5,8 +5,18 @@ rule film_string:
     input:
         "results/{corpus}/synthesis/{string}.h5",
     output:
-        film="results/{corpus}/film/{string}.mp4",
-        sheet="results/{corpus}/film/{string}_sheet.png",
+        film=report(
+            "results/{corpus}/film/{string}.mp4",
+            caption="../report/film.rst",
+            category="Films",
+            labels={"corpus": "{corpus}", "what": "{string}"},
+        ),
+        sheet=report(
+            "results/{corpus}/film/{string}_sheet.png",
+            caption="../report/film.rst",
+            category="Films",
+            labels={"corpus": "{corpus}", "what": "{string}, pictures"},
+        ),
     log:
         "results/logs/render/{corpus}/{string}.log",
     benchmark:
@@ -26,8 +36,18 @@ rule film_take:
     input:
         lambda wildcards: FLOW.motion_of(wildcards.corpus, wildcards.name),
     output:
-        film="results/{corpus}/film/{name}.mp4",
-        sheet="results/{corpus}/film/{name}_sheet.png",
+        film=report(
+            "results/{corpus}/film/{name}.mp4",
+            caption="../report/film.rst",
+            category="Films",
+            labels={"corpus": "{corpus}", "what": "{name}"},
+        ),
+        sheet=report(
+            "results/{corpus}/film/{name}_sheet.png",
+            caption="../report/film.rst",
+            category="Films",
+            labels={"corpus": "{corpus}", "what": "{name}, pictures"},
+        ),
     log:
         "results/logs/render/{corpus}/{name}.log",
     benchmark:

@@ -22,7 +22,6 @@ from miburi.report.pack import Clips, packed_json
 from miburi.report.page import Table
 from miburi.retrieval.index import Index
 
-
 _PERCENT = "\u00a0%"
 
 
