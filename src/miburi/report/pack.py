@@ -75,7 +75,7 @@ class Clips:
         Characters of packed numbers that may still be added.
     """
 
-    fps: float = 15.0
+    fps: float = 30.0
     room: int = 3_500_000
     skeletons: list[dict[str, Any]] = field(default_factory=list)
     about: dict[str, dict[str, Any]] = field(default_factory=dict)
