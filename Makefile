@@ -3,6 +3,7 @@
 # make setup    set up alone: .venv from requirements.lock, libraries for headless OpenGL, venv
 # make bench    speed against other people's implementations
 # make lint     what CI checks beside the tests
+# make page     build the pages' script and style from web/ (needs Node)
 # make lock     fix versions and hashes anew (needs a network)
 # make clean    remove .venv and caches; results and recordings stay
 #
@@ -17,7 +18,7 @@ PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 CORES ?= all
 BENCHMARKS ?= $(wildcard benchmarks/bench_*.py)
 
-.PHONY: all setup system test bench lint lock clean
+.PHONY: all setup system test bench lint page lock clean
 
 all: setup
 	$(BIN)/snakemake --cores $(CORES)
@@ -57,6 +58,12 @@ lint: setup
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/python tools/lint_snakemake.py
 	$(BIN)/python tools/config_docs.py --check
+
+web/node_modules/.complete: web/package.json web/package-lock.json
+	cd web && npm ci --silent && touch node_modules/.complete
+
+page: web/node_modules/.complete
+	cd web && npm run --silent check && npm run --silent test && npm run --silent build
 
 # nothing in the lock may need a compiler; one package has no wheel, but is Python alone
 lock: | system

@@ -318,7 +318,7 @@ class Flow:
             f"results/{corpus}/film/{name}{ending}"
             for corpus, name in self.film_names()
             for ending in (".mp4", "_sheet.png")
-        ]
+        ] + [f"results/{s.corpus}/compared/{name}.mp4" for name, s in self.config.strings.items()]
 
     def own_logs(self, corpus: str) -> dict[str, str]:
         """Puppet logs in the folder that the config names for a corpus: name → path."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from difflib import Match, SequenceMatcher
 
 from miburi import artefacts
 from miburi.errors import InputError
@@ -10,6 +11,37 @@ from miburi.formats.annotations import read_annotations
 from miburi.motion import Floats
 
 Interval = tuple[int, int, str]
+
+
+def longest_match(
+    takes: Sequence[tuple[Floats, Sequence[Interval]]], labels: Sequence[str]
+) -> tuple[Floats, list[Interval]]:
+    """The recording from where it shows most of a string's labels one after the other.
+
+    Parameters
+    ----------
+    takes
+        As from `labelled_takes`.
+    labels
+        Of the string.
+
+    Returns
+    -------
+    angles : (T, 48)
+        From the beginning of that run of labels to the end of its take.
+    intervals
+        Of these frames.
+    """
+
+    def run(take: tuple[Floats, Sequence[Interval]]) -> Match:
+        shown = [label for _, _, label in take[1]]
+        return SequenceMatcher(None, shown, list(labels), autojunk=False).find_longest_match()
+
+    angles, intervals = max(takes, key=lambda take: run(take).size)
+    found = run((angles, intervals))
+    begin = intervals[found.a][0] if found.size else 0
+    after = [(a - begin, b - begin, label) for a, b, label in intervals if a >= begin]
+    return angles[begin:], after
 
 
 def labelled_takes(

@@ -151,3 +151,27 @@ def test_strips_of_changes():
     assert two.frames[0] == 27 and two.frames[-1] == 47
     with pytest.raises(InputError, match="strip of 'pr' is wanted, the string is r rs s sp p"):
         sheets.changes(labels, boundaries, ["pr"])
+
+
+def test_each_figure_has_its_own_caption(tmp_path):
+    captions = [[(0, 0.05, "mmm")], [(0.05, 1, "mmm")]]
+    film.film(tmp_path / "a.mp4", [fist(4), fist(4)], width=320, height=120, own_captions=captions)
+    dark = 255 - film.decode(tmp_path / "a.mp4")[1].astype(np.int16).min(axis=-1)
+    left, right = dark[:, 106:, :160].max(axis=(1, 2)) > 120, dark[:, 106:, 160:].max(axis=(1, 2)) > 120
+    assert left.tolist() == [True, True, False, False]
+    assert right.tolist() == [False, False, True, True]
+    with pytest.raises(InputError, match="captions of 1 figures for 2"):
+        film.film(tmp_path / "b.mp4", [fist(4), fist(4)], own_captions=captions[:1])
+
+
+def test_an_animated_webp_shows_the_same(tmp_path):
+    motion = fist(7)
+    assert film.film(tmp_path / "a.webp", motion, width=160, height=120) == 7
+    rendered = list(scene.frames(motion, width=160, height=120))
+    animation = Image.open(tmp_path / "a.webp")
+    assert animation.n_frames == 7 and animation.info["loop"] == 0
+    for k, picture in enumerate(rendered):
+        animation.seek(k)
+        assert np.abs(np.asarray(animation.convert("RGB")).astype(np.int16) - picture).mean() < 4
+    film.film(tmp_path / "b.webp", motion, width=160, height=120)
+    assert (tmp_path / "a.webp").read_bytes() == (tmp_path / "b.webp").read_bytes()

@@ -6,6 +6,7 @@ import base64
 import gzip
 
 import numpy as np
+
 from miburi.figures import BODY_JOINTS
 
 

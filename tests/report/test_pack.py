@@ -105,7 +105,7 @@ def test_the_limb_that_differs_has_the_share() -> None:
     query = 0.01 * rng.normal(size=(40, 42))
     frames = query.copy()
     right_arm = LIMBS.index("right arm")
-    frames[:, COLUMNS == right_arm] += 1.0
+    frames[:, right_arm == COLUMNS] += 1.0
     shares = contributions(query, frames, *subspace.fit(frames, 5))
     assert shares[right_arm] > 0.9
 

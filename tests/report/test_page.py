@@ -80,10 +80,47 @@ def row(**cells: str) -> dict[str, str]:
 
 def test_dots_lie_on_their_scale() -> None:
     rows = [
-        row(measure="A", hit10="2.5", users="5", hit10_low="0", hit10_high="5", hit10_paper="", users_paper="", chance10="1"),
-        row(measure="B", hit10="", users="", hit10_low="", hit10_high="", hit10_paper="4", users_paper="4", chance10=""),
-        row(measure="C", hit10="", users="", hit10_low="", hit10_high="", hit10_paper="", users_paper="", chance10=""),
-        row(measure="A", hit10="1", users="5", hit10_low="", hit10_high="", hit10_paper="", users_paper="", chance10="") | {"keyword": "wave"},
+        row(
+            measure="A",
+            hit10="2.5",
+            users="5",
+            hit10_low="0",
+            hit10_high="5",
+            hit10_paper="",
+            users_paper="",
+            chance10="1",
+        ),
+        row(
+            measure="B",
+            hit10="",
+            users="",
+            hit10_low="",
+            hit10_high="",
+            hit10_paper="4",
+            users_paper="4",
+            chance10="",
+        ),
+        row(
+            measure="C",
+            hit10="",
+            users="",
+            hit10_low="",
+            hit10_high="",
+            hit10_paper="",
+            users_paper="",
+            chance10="",
+        ),
+        row(
+            measure="A",
+            hit10="1",
+            users="5",
+            hit10_low="",
+            hit10_high="",
+            hit10_paper="",
+            users_paper="",
+            chance10="",
+        )
+        | {"keyword": "wave"},
     ]
     (plot,) = intervals.hits(rows)
     a, b = plot.dots
@@ -97,7 +134,9 @@ def test_dots_lie_on_their_scale() -> None:
 
 def test_ranks_are_on_a_logarithmic_scale() -> None:
     names = ("mean_rank", "mean_rank_low", "mean_rank_high", "mean_rank_paper", "chance_rank")
-    (plot,) = intervals.ranks([row(measure="A", **dict(zip(names, ("10", "1", "100", "10", "100"), strict=True)))])
+    (plot,) = intervals.ranks(
+        [row(measure="A", **dict(zip(names, ("10", "1", "100", "10", "100"), strict=True)))]
+    )
     (dot,) = plot.dots
     assert dot.ours == dot.paper
     assert dot.ours - dot.low == pytest.approx(dot.high - dot.ours, abs=0.2)

@@ -42,10 +42,10 @@ export function draw(
   sample(clip.data, n * 3, clip.frames, at, points);
   const middle = new Float32Array(3);
   sample(clip.centre, 3, clip.frames, at, middle);
-  const tall = hand ? 0.23 : Math.max(1.9, 1.14 * (clip.top - clip.floor));
+  const tall = hand ? 0.23 : Math.max(1.9, 1.22 * (clip.top - clip.floor));
   const look: [number, number, number] = hand
     ? [middle[0], middle[1], middle[2]]
-    : [middle[0], clip.floor + 0.43 * tall, middle[2]];
+    : [middle[0], clip.floor + 0.42 * tall, middle[2]];
   const pixels = (view.zoom * Math.min(height, width * 1.25)) / tall;
   const project = projection(clip.front + view.yaw, view.pitch, look, pixels, tall * 3.2, width, height);
   ground(context, project, look, clip.floor, hand);

@@ -186,7 +186,8 @@ export function models(root: HTMLElement, joints: string[], all: Model[], scale:
     const head = document.createElement("thead");
     const cells = (tag: "th" | "td", words: string[]): HTMLTableRowElement => {
       const made = document.createElement("tr");
-      made.append(...words.map((w, k) => Object.assign(document.createElement(k ? tag : "th"), { textContent: w, scope: k ? "" : "row" })));
+      made.append(...words.map((w, k) => Object.assign(document.createElement(k ? tag : "th"), { textContent: w })));
+      made.cells[0].scope = "row";
       return made;
     };
     head.append(cells("th", ["angle", ...states.map((s) => `state ${s}`)]));

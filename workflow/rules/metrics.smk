@@ -14,7 +14,12 @@ rule metrics:
         takes=FLOW.of_corpora("takes.csv"),
         indices=FLOW.indices(),
     output:
-        "results/metrics.json",
+        report(
+            "results/metrics.json",
+            caption="../report/metrics.rst",
+            category="Metrics",
+            labels={"what": "all metrics of the run"},
+        ),
     log:
         "results/logs/metrics/metrics.log",
     benchmark:

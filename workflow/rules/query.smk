@@ -51,7 +51,12 @@ rule search:
         takes="results/{corpus}/takes.csv",
         log=lambda wildcards: FLOW.log_of(wildcards.corpus, wildcards.query),
     output:
-        "results/{corpus}/search/{query}.csv",
+        report(
+            "results/{corpus}/search/{query}.csv",
+            caption="../report/search.rst",
+            category="Searches",
+            labels={"corpus": "{corpus}", "query": "{query}", "what": "table"},
+        ),
     log:
         "results/logs/search/{corpus}/{query}.log",
     benchmark:

@@ -9,7 +9,12 @@ rule score:
         takes="results/{corpus}/takes.csv",
         annotations="results/{corpus}/annotations.tsv",
     output:
-        "results/{corpus}/scores/{experiment}.csv",
+        report(
+            "results/{corpus}/scores/{experiment}.csv",
+            caption="../report/scores.rst",
+            category="Scores",
+            labels={"corpus": "{corpus}", "experiment": "{experiment}"},
+        ),
     log:
         "results/logs/score/{corpus}/{experiment}.log",
     benchmark:

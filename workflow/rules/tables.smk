@@ -12,6 +12,7 @@ for _table, _experiment in FLOW.filled_tables().items():
                 f"results/{_table}.csv",
                 caption=f"../report/{_table}.rst",
                 category="Tables",
+                labels={"paper": "[P]", "what": _table.replace("table", "table ")},
             ),
         log:
             f"results/logs/tables/{_table}.log",
@@ -39,6 +40,7 @@ if CONFIG.tables.string:
                 "results/label_counts.csv",
                 caption="../report/label_counts.rst",
                 category="Tables",
+                labels={"paper": "[H]", "what": "table 2 and lengths"},
             ),
         log:
             "results/logs/tables/label_counts.log",
@@ -64,11 +66,13 @@ if CONFIG.tables.string:
                 "results/fig4.png",
                 caption="../report/fig4.rst",
                 category="Figures",
+                labels={"paper": "[H]", "what": "figure 4"},
             ),
             fig5=report(
                 "results/fig5.png",
                 caption="../report/fig5.rst",
                 category="Figures",
+                labels={"paper": "[H]", "what": "figure 5"},
             ),
         log:
             "results/logs/figures/curves.log",
@@ -91,6 +95,7 @@ if CONFIG.tables.string:
                 "results/fig6.png",
                 caption="../report/fig6.rst",
                 category="Figures",
+                labels={"paper": "[H]", "what": "figure 6"},
             ),
         log:
             "results/logs/figures/strips.log",

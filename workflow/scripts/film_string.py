@@ -1,4 +1,4 @@
-"""A synthesised string → a film with its labels, and a contact sheet."""
+"""A synthesised string → a film with its labels (MP4 or animated WebP), and a contact sheet if one is wanted."""
 
 from miburi import job
 from miburi.hmm import Synthesis
@@ -15,7 +15,7 @@ def main(snakemake):
     edges = synthesis.boundaries / motion.fps
     captions = list(zip(edges[:-1], edges[1:], synthesis.labels, strict=True))
     film(
-        snakemake.output.film,
+        snakemake.output[0],
         motion,
         fps=settings["fps"],
         width=settings["width"],
@@ -23,8 +23,9 @@ def main(snakemake):
         title=title,
         captions=captions,
     )
-    strips = rows(motion, columns=settings["columns"])
-    sheet(snakemake.output.sheet, motion, strips, title=title, captions=synthesis.label)
+    if "sheet" in snakemake.output.keys():  # noqa: SIM118 (Snakemake's list of files has names)
+        strips = rows(motion, columns=settings["columns"])
+        sheet(snakemake.output.sheet, motion, strips, title=title, captions=synthesis.label)
 
 
 job.run(main, snakemake)  # noqa: F821

@@ -12,7 +12,7 @@ from miburi.takes import Take
 def main(snakemake):
     reading, skip = snakemake.params.reading, snakemake.params.on_error == "skip"
     motions, recordings, skipped = {}, {}, []
-    for name, subject, path, group in reading["takes"]:
+    for name, subject, path, group in job.progress(reading["takes"], "takes"):
         try:
             motions[name] = read_take(Take(name, subject, path, group, 0.0), reading["groups"][group])
             recordings[name] = path

@@ -36,7 +36,7 @@ def main(snakemake):
         motions |= artefacts.read_motions(path, sorted(here)) if here else {}
     logs = Path(snakemake.output.logs)
     logs.mkdir(parents=True)
-    for q in queries:
+    for q in job.progress(queries, "queries"):
         clip = motions[q.take][q.start : q.end] if q.take else imagine(q.keyword, f"{seed}-{q.query}")
         angles, rate = imitate(clip, players[q.user], seed_parts=(seed, q.query))
         puppet.write_log(logs / f"{q.query}.csv", angles, rate, simulated=True)

@@ -24,7 +24,7 @@ def main(snakemake):
         features[queries[0].query], measure, reduction=reduction
     )  # kernels are compiled and loaded
     orders, scores, seconds = [], [], []
-    for query in queries:
+    for query in job.progress(queries, "queries"):
         start = time.perf_counter()
         distance = index.distances(features[query.query], measure, reduction=reduction)
         found = ranking(np.where(left_out(query, segments, subjects), np.inf, distance))

@@ -11,7 +11,7 @@ def main(snakemake):
     shortest = settings.pop("shortest_s")
     cut, joints = snakemake.params.cut, snakemake.params.joints
     found = {}
-    for take, motion in artefacts.read_motions(snakemake.input[0]).items():
+    for take, motion in job.progress(artefacts.read_motions(snakemake.input[0]).items(), "takes"):
         frames = len(motion)
         if cut[take] == "whole":
             cuts = np.array([], dtype=np.int64)

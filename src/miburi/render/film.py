@@ -1,4 +1,4 @@
-"""Films: MP4 by the ffmpeg that comes with imageio-ffmpeg, the same bytes for the same motion."""
+"""Films: MP4 by the ffmpeg that comes with imageio-ffmpeg, or animated WebP; the same bytes for the same motion."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import os
 import subprocess
 import tempfile
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import imageio_ffmpeg
 import numpy as np
+from PIL import Image
 
 from miburi import store
 from miburi.errors import InputError
@@ -35,6 +37,7 @@ def film(
     title: str = "",
     names: Sequence[str] = (),
     captions: Sequence[Caption] = (),
+    own_captions: Sequence[Sequence[Caption]] = (),
 ) -> int:
     """Make a film of one motion, or of several side by side.
 
@@ -43,7 +46,7 @@ def film(
     Parameters
     ----------
     path
-        Of the MP4; it appears whole or not at all.
+        Of the film, .mp4 or .webp (which repeats for ever); it appears whole or not at all.
     fps
         Pictures per second; absent: the first motion's rate. Motions of another rate are resampled.
     width, height
@@ -54,6 +57,8 @@ def film(
         Of the figures that are shown side by side, written under each.
     captions
         (start_s, end_s, text): what is written below from when to when, seconds; the end is exclusive.
+    own_captions
+        Captions of each figure, written under it.
 
     Returns
     -------
@@ -75,23 +80,30 @@ def film(
         raise InputError(f"{path}: pictures of {width} × {height} pixels, a film needs even numbers")
     if names and len(names) != len(shown):
         raise InputError(f"{path}: {len(names)} names for {len(shown)} figures")
+    if own_captions and len(own_captions) != len(shown):
+        raise InputError(f"{path}: captions of {len(own_captions)} figures for {len(shown)}")
     line = text.size(height)
     top = int(1.7 * line) if title else 0
-    below = int(1.5 * line) * (bool(names) + bool(captions))
+    below = int(1.5 * line) * (bool(names) + bool(captions or own_captions))
     inner = height - top - below
     motions_at_rate = [resample(m, rate) for m in shown]
     page = np.full((height, width, 3), 255, np.uint8)
     if title:
         page = text.write(page, title, (line, 0.5 * line), "lt", line)
-    if names:
+    places: list[float] = []
+    if names or own_captions:
         figures = figure.group(motions_at_rate)
         places = figure.across(figures, figure.camera(figures, width / inner), width / inner)
-        for name, x in zip(names, places, strict=True):
-            page = text.write(page, name, (x * width, top + inner + 0.2 * line), "mt", line)
+    for name, x in zip(names, places, strict=False):
+        page = text.write(page, name, (x * width, top + inner + 0.2 * line), "mt", line)
+    under = [(x * width, c) for x, c in zip(places, own_captions, strict=False)]
     pictures = scene.frames(motions_at_rate, width=width, height=inner)
     with store.replaced(path) as temporary:
         try:
-            return encode(temporary, _pages(pictures, page, top, rate, captions), rate, width, height)
+            pages = _pages(pictures, page, top, rate, captions, under)
+            if Path(path).suffix == ".webp":
+                return _animate(temporary, pages, rate)
+            return encode(temporary, pages, rate, width, height)
         except _FfmpegFailed as error:
             raise InputError(f"{path}: the film cannot be written (ffmpeg: {error})") from error
         finally:
@@ -135,6 +147,18 @@ def encode(
     return count
 
 
+def _animate(path: str | os.PathLike[str], pictures: Iterator[Picture], fps: float) -> int:
+    """Write pictures as an animated WebP; their number."""
+    first, *rest = [Image.fromarray(np.ascontiguousarray(p)) for p in pictures]
+    # whole milliseconds that add up: a rate of 30 is 33, 34, 33 … ms
+    ends = [round(1000 * (k + 1) / fps) for k in range(len(rest) + 1)]
+    durations = [b - a for a, b in zip([0, *ends], ends, strict=False)]
+    first.save(
+        path, "WEBP", save_all=True, append_images=rest, duration=durations, loop=0, quality=60, method=4
+    )
+    return len(durations)
+
+
 def decode(path: str | os.PathLike[str]) -> tuple[float, Picture]:
     """Pictures per second and pictures (T, height, width, 3) of a film."""
     reader = imageio_ffmpeg.read_frames(str(path))
@@ -145,11 +169,24 @@ def decode(path: str | os.PathLike[str]) -> tuple[float, Picture]:
 
 
 def _pages(
-    pictures: Iterator[Picture], page: Picture, top: int, fps: float, captions: Sequence[Caption]
+    pictures: Iterator[Picture],
+    page: Picture,
+    top: int,
+    fps: float,
+    captions: Sequence[Caption],
+    under: Sequence[tuple[float, Sequence[Caption]]],
 ) -> Iterator[Picture]:
-    """Pictures on a page of words, with the caption of their time."""
+    """Pictures on a page of words, with the captions of their time: one for all, and one under each figure."""
+
+    def now(all_of: Sequence[Caption], k: int) -> str:
+        return next((w for start, end, w in all_of if start <= (k + 1e-6) / fps < end), "")
+
+    height, letters = len(page), text.size(len(page))
     for k, picture in enumerate(pictures):
-        words = [w for start, end, w in captions if start <= (k + 1e-6) / fps < end]
-        whole = text.below(page, words[0]).copy() if words else page.copy()
+        words = now(captions, k)
+        whole = text.below(page, words) if words else page
+        for x, own in under:
+            whole = text.write(whole, now(own, k), (x, height - 0.5 * letters), "ms", letters)
+        whole = whole.copy()
         whole[top : top + len(picture)] = picture
         yield whole

@@ -22,6 +22,8 @@ from miburi.report.pack import Clips, packed_json
 from miburi.report.page import Table
 from miburi.retrieval.index import Index
 
+_PERCENT = "\u00a0%"
+
 
 def corpus_of(path: str) -> str:
     """The corpus that results/{corpus}/… belongs to."""
@@ -174,7 +176,9 @@ def labels(annotations: str) -> Table:
     found: dict[str, list[float]] = {}
     for a in read_annotations(annotations):
         found.setdefault(a.keyword, []).append(a.end_s - a.start_s)
-    rows = tuple((k, str(len(v)), f"{sum(v):.1f}", f"{sum(v) / len(v):.2f}") for k, v in sorted(found.items()))
+    rows = tuple(
+        (k, str(len(v)), f"{sum(v):.1f}", f"{sum(v) / len(v):.2f}") for k, v in sorted(found.items())
+    )
     return Table(("label", "intervals", "seconds_in_all", "mean_s"), rows)
 
 
@@ -190,7 +194,9 @@ def tiles(
     for name, protocol in (("table1", "1"), ("table1", "2"), ("table3", "2")):
         found += _hit_tile(tables.get(name), name, protocol)
     if "length, this run" in lengths:
-        found.append((f"{lengths['length, this run']} frames", "length of the generated string (printed: 238)"))
+        found.append(
+            (f"{lengths['length, this run']} frames", "length of the generated string (printed: 238)")
+        )
     generated, spliced = (lengths.get(f"largest jump at joins, {k}") for k in ("generated", "spliced"))
     if generated and spliced:
         words = f"largest jump where labels meet, generated; {float(spliced):.1f}° put end to end"
@@ -206,10 +212,13 @@ def _hit_tile(table: Table | None, name: str, protocol: str) -> list[tuple[str, 
         return []
     row = means[measure]
     users = float(row["users"])
-    paper = f"; the paper {100 * float(row['hit10_paper']) / float(row['users_paper']):.0f} %" if row["hit10_paper"] else ""
-    chance = f"; chance {100 * float(row['chance10']) / users:.0f} %"
-    words = f"of users found the motion among the first 10: {measure}, {name}, protocol {protocol}{paper}{chance}"
-    return [(f"{100 * float(row['hit10']) / users:.0f} %", words)]
+    printed = float(row["hit10_paper"]) / float(row["users_paper"]) if row["hit10_paper"] else None
+    paper = "" if printed is None else f"; the paper {100 * printed:.0f}{_PERCENT}"
+    chance = f"; chance {100 * float(row['chance10']) / users:.0f}{_PERCENT}"
+    words = (
+        f"of users found the motion among the first 10: {measure}, {name.replace('table', 'table ')} of [P], protocol {protocol}{paper}{chance}"
+    )
+    return [(f"{100 * float(row['hit10']) / users:.0f}{_PERCENT}", words)]
 
 
 def pack(**parts: Any) -> dict[str, str]:

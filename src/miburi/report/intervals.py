@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 Row = Mapping[str, str]
+_Marks = tuple[str, float | None, float | None, float | None, float | None, float | None]
+"""A measure's name; ours, its interval, the paper's, chance."""
 _LEFT, _RIGHT, _TOP, _STEP = 150.0, 20.0, 24.0, 26.0
 WIDTH = 640.0
 """Of a plot, in its own units."""
@@ -63,7 +65,10 @@ def ranks(rows: Sequence[Row]) -> list[Plot]:
     """Mean ranks of the clip that was shown, of table 2."""
     here = [r for r in rows if r["keyword"] == "mean"]
     names = ("mean_rank", "mean_rank_low", "mean_rank_high", "mean_rank_paper", "chance_rank")
-    values = [(r["measure"], *(_value(r, n) for n in names)) for r in here]
+    values: list[_Marks] = [
+        (r["measure"], *(_value(r, n) for n in names))  # type: ignore[misc]
+        for r in here
+    ]
     most = max((v for row in values for v in row[1:] if isinstance(v, float)), default=1.0)
     ticks = [t for t in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000) if t <= most * 1.2]
     title = "Mean rank of the clip that the user saw and imitated (1 is best)"
@@ -87,7 +92,7 @@ def _share(row: Row, name: str, whole: str) -> float | None:
 def _plot(
     title: str,
     scale: str,
-    values: Sequence[tuple[str, float | None, float | None, float | None, float | None, float | None]],
+    values: Sequence[_Marks],
     least: float,
     most: float,
     ticks: Sequence[float],
@@ -100,7 +105,7 @@ def _plot(
         share = math.log(at / a) / math.log(b / a) if log else (at - a) / (b - a)
         return round(_LEFT + share * (WIDTH - _LEFT - _RIGHT), 1)
 
-    dots = []
+    dots: list[Dot] = []
     for name, ours, low, high, paper, chance in values:
         if ours is None and paper is None:
             continue

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from miburi.errors import InputError
 from miburi.kinematics import resample
@@ -63,14 +63,6 @@ def packed(values: ArrayLike, unit: float) -> str:
     return squeezed((code & 255).astype(np.uint8).tobytes() + (code >> 8).astype(np.uint8).tobytes())
 
 
-def unpacked(text: str, rows: int, unit: float) -> NDArray[np.float64]:
-    """What `packed` packed, (rows, C)."""
-    data = np.frombuffer(gzip.decompress(base64.b64decode(text)), np.uint8).astype(np.int32)
-    code = data[: len(data) // 2] | data[len(data) // 2 :] << 8
-    change = ((code >> 1) ^ -(code & 1)).reshape(-1, rows)
-    return (np.cumsum(change, axis=1).astype(np.int16) * unit).T
-
-
 @dataclass
 class Clips:
     """Motions of a page, each once: what the page knows of them at once, and their packed numbers.
@@ -83,7 +75,7 @@ class Clips:
         Characters of packed numbers that may still be added.
     """
 
-    fps: float = 15.0
+    fps: float = 30.0
     room: int = 3_500_000
     skeletons: list[dict[str, Any]] = field(default_factory=list)
     about: dict[str, dict[str, Any]] = field(default_factory=dict)

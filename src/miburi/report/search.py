@@ -7,8 +7,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from miburi.formats import bvh, puppet
-from miburi.motion import Floats, Motion
+from miburi.motion import Motion
 from miburi.render import figure
 from miburi.report import assemble
 from miburi.report.bodies import FIRST, clip_name, shares
@@ -18,7 +21,12 @@ from miburi.retrieval.index import Index
 
 
 def page(
-    table: str, log: str, index: str, motions: Sequence[str], query: Floats, about: Mapping[str, Any]
+    table: str,
+    log: str,
+    index: str,
+    motions: Sequence[str],
+    query: NDArray[np.float32],
+    about: Mapping[str, Any],
 ) -> str:
     """The HTML of a search.
 
@@ -37,7 +45,8 @@ def page(
     """
     corpus, rows = assemble.corpus_of(table), assemble.read_rows(table)[:FIRST]
     played, stored = puppet.read(log), Index.open(index)
-    places = {(t, int(a), int(b)): i for i, (t, a, b) in enumerate(zip(stored.take, stored.start, stored.end, strict=True))}
+    spans = zip(stored.take, stored.start.tolist(), stored.end.tolist(), strict=True)
+    places = {span: i for i, span in enumerate(spans)}
     takes = assemble.motions(motions, {r["take"] for r in rows})
     clips, kept, results = Clips(), dict[str, str](), []
     name = Path(table).stem

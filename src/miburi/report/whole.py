@@ -18,7 +18,11 @@ from miburi.report.words import FIGURES, TABLES
 FILMS = 1_500_000
 """Bytes of films that the page carries itself; more of them lie beside it."""
 
-_BODY_TABLES, _SPEED_TABLES, _HAND_TABLES = ("table1", "table2", "table3", "puppeteers"), ("table4", "table5"), ("label_counts",)
+_BODY_TABLES, _SPEED_TABLES, _HAND_TABLES = (
+    ("table1", "table2", "table3", "puppeteers"),
+    ("table4", "table5"),
+    ("label_counts",),
+)
 _PLOTS = {"table1": intervals.hits, "table2": intervals.ranks, "table3": intervals.hits}
 _PARTS = (
     ("overview", "In short"),
@@ -37,8 +41,11 @@ Paths = Sequence[str]
 
 
 def report(
-    given: Mapping[str, Paths], config: Mapping[str, Any], about: Mapping[str, Mapping[str, Any]],
-    joints: Mapping[str, Mapping[str, Any]], spliced: Mapping[str, Spliced],
+    given: Mapping[str, Paths],
+    config: Mapping[str, Any],
+    about: Mapping[str, Mapping[str, Any]],
+    joints: Mapping[str, Mapping[str, Any]],
+    spliced: Mapping[str, Spliced],
 ) -> str:
     """The report's HTML.
 
@@ -71,7 +78,10 @@ def report(
     )
     tables = {Path(p).stem: read_table(p, mean=_by(p)) for p in files["tables"]}
     where = {Path(p).stem: p for p in files["tables"]}
-    searches, films = [_search(p) for p in files["searches"] if p.endswith(".csv")], _films(files["films"], about)
+    searches, films = (
+        [_search(p) for p in files["searches"] if p.endswith(".csv")],
+        _films(files["films"], about),
+    )
     absent = {n for n in ("segmentation", "gestures", "models", "retrieval") if n not in packs}
     absent |= {n for n, there in (("searches", searches), ("films", films)) if not there}
     if any(t in tables for t in _BODY_TABLES):
@@ -108,7 +118,18 @@ def report(
 
 
 _KINDS = (
-    *("tables", "figures", "films", "searches", "metrics", "skipped", "takes", "annotations", "motion", "segments"),
+    *(
+        "tables",
+        "figures",
+        "films",
+        "searches",
+        "metrics",
+        "skipped",
+        "takes",
+        "annotations",
+        "motion",
+        "segments",
+    ),
     *("syntheses", "lengths", "models", "indices", "queries", "query_features", "ranks", "segmentation"),
 )
 
@@ -154,7 +175,9 @@ def _gesture(
     return hands.gesture(name, Synthesis.open(path), spliced.get(name), source, clips, numbers)
 
 
-def _experiment(table: str, body: Bodies, files: Mapping[str, Paths], config: Mapping[str, Any]) -> dict[str, Any]:
+def _experiment(
+    table: str, body: Bodies, files: Mapping[str, Paths], config: Mapping[str, Any]
+) -> dict[str, Any]:
     """An experiment by the path of its queries, data/raw/{corpus}/queries/{experiment}/queries.tsv."""
     corpus, name = Path(table).parts[-4], Path(table).parts[-2]
     features = next(p for p in of_corpus(files["query_features"], corpus) if Path(p).stem == name)
@@ -172,7 +195,9 @@ def _figure(path: str) -> dict[str, str]:
     return {"data": embedded(path), "alt": title, "words": words}
 
 
-def _shown(names: Sequence[str], tables: Mapping[str, Table], where: Mapping[str, str]) -> list[dict[str, Any]]:
+def _shown(
+    names: Sequence[str], tables: Mapping[str, Table], where: Mapping[str, str]
+) -> list[dict[str, Any]]:
     return [
         {
             "name": name,
@@ -189,7 +214,12 @@ def _shown(names: Sequence[str], tables: Mapping[str, Table], where: Mapping[str
 
 def _search(path: str) -> dict[str, Any]:
     name, corpus = Path(path).stem, corpus_of(path)
-    return {"name": name, "corpus": corpus, "link": f"{corpus}/search/{name}.html", "table": read_table(path, 10)}
+    return {
+        "name": name,
+        "corpus": corpus,
+        "link": f"{corpus}/search/{name}.html",
+        "table": read_table(path, 10),
+    }
 
 
 def _films(paths: Paths, about: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -198,12 +228,13 @@ def _films(paths: Paths, about: Mapping[str, Mapping[str, Any]]) -> list[dict[st
     found = []
     for path in films:
         kind = "simulated" if about[corpus_of(path)]["simulated"] else "recorded"
+        compared = ", recorded and put end to end and generated" if "compared" in Path(path).parts else ""
         sheet = path.replace(".mp4", "_sheet.png")
         found.append(
             {
                 "source": embedded(path) if carried else str(Path(path).relative_to("results")),
                 "inside": carried,
-                "alt": f"{Path(path).stem.replace('_', ' ')}, from {kind} {corpus_of(path)}",
+                "alt": f"{Path(path).stem.replace('_', ' ')}, from {kind} {corpus_of(path)}{compared}",
                 "sheet": embedded(sheet) if carried and Path(sheet).is_file() and sheet in paths else "",
             }
         )
