@@ -81,7 +81,9 @@ def leave_one_out(
                 total = 0.0
                 for k in scored:
                     rest = x[:k] + x[k + 1 :]
-                    model = train(rest, states=n, covariance=covariance, reference=floor, label=label, **settings)
+                    model = train(
+                        rest, states=n, covariance=covariance, reference=floor, label=label, **settings
+                    )
                     total += log_likelihood_of(model, [x[k]])
                 found.append(LeftOut(label, covariance, n, len(scored), frames, total))
     return found

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from miburi.errors import InputError
-from miburi.hmm.strings import untrainable
 from miburi.hmm.windows import Floats, Half, checked_frames, deltas
+from miburi.strings import untrainable
 
 
 class Joined(NamedTuple):

@@ -60,7 +60,9 @@ def stream(steps: Iterable[Step], delay: int, *, half: Half = (1, 1)) -> Iterato
             raw, raw_right = np.zeros((width + 1, width + 1, dims)), np.zeros((width + 1, dims))
             gaussians = np.zeros((width + 1, 2, 3 * dims))
         if now.shape != gaussians.shape[1:]:
-            raise InputError(f"stream: a mean of {now.shape[1]} values, expected {gaussians.shape[2]} as before")
+            raise InputError(
+                f"stream: a mean of {now.shape[1]} values, expected {gaussians.shape[-1]} as before"
+            )
         for _ in range(frames):
             gaussians[:-1], gaussians[-1] = gaussians[1:].copy(), now
             _push(gaussians, count, delta, square, raw, raw_right, band, right)
@@ -131,7 +133,9 @@ def stream_labels(
             model = models[label]
             first.append(model)
             if model.half != first[0].half:
-                raise InputError(f"models {first[0].label!r} and {label!r} differ in half lengths of delta windows")
+                raise InputError(
+                    f"models {first[0].label!r} and {label!r} differ in half lengths of delta windows"
+                )
             frames, _ = frames_per_state(model.duration_mean, model.duration_variance, rho=rho)
             yield from zip(model.mean, model.variance, frames.tolist(), strict=True)
 
@@ -163,5 +167,7 @@ def delay_errors(
     found = []
     for delay in delays:
         x = np.array(list(stream(zip(mu, v, [1] * len(mu), strict=True), delay, half=half)))
-        found.append(DelayError(delay, float(np.abs(x - batch).max()), float(np.sqrt(np.square(x - batch).mean()))))
+        found.append(
+            DelayError(delay, float(np.abs(x - batch).max()), float(np.sqrt(np.square(x - batch).mean())))
+        )
     return found

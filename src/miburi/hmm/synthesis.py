@@ -17,12 +17,12 @@ from miburi.hmm import variance as spread
 from miburi.hmm.generation import log_likelihood, mlpg, steps_of
 from miburi.hmm.model import Form, Model
 from miburi.hmm.search import Staircase, joint_durations
-from miburi.hmm.strings import Word, parse
 from miburi.hmm.timing import frames_per_state
 from miburi.hmm.training import train
 from miburi.hmm.windows import Floats
 from miburi.kinematics import hand_rotations
 from miburi.motion import Motion
+from miburi.strings import Word, parse
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,7 +244,7 @@ def synthesize(
 def _covariances(model: Model) -> Floats:
     if model.covariance is not None:
         return model.covariance
-    return np.einsum("nd,de->nde", model.variance, np.eye(model.variance.shape[1]))
+    return np.apply_along_axis(np.diag, 1, model.variance)
 
 
 def _durations(chain: Sequence[Model], words: Sequence[Word]) -> tuple[Floats, Floats]:
