@@ -23,6 +23,7 @@ include: "workflow/rules/render.smk"
 include: "workflow/rules/query.smk"
 include: "workflow/rules/score.smk"
 include: "workflow/rules/tables.smk"
+include: "workflow/rules/hand_figures.smk"
 include: "workflow/rules/metrics.smk"
 include: "workflow/rules/report.smk"
 

@@ -199,15 +199,41 @@ class Train(Model):
     durations: Literal["exact", "product"] = Field(
         "exact", description="Durations from the model, or by eqs. 9-11 as printed."
     )
+    least_intervals: int = Field(
+        1, ge=1, description="A label with fewer intervals that are long enough is refused."
+    )
 
 
 class String(Model):
     """A string of labels to synthesise."""
 
     corpus: Name = Field(description="Corpus whose models are used.")
-    labels: str = Field(min_length=1, description="Labels, separated by blanks.")
+    labels: str = Field(
+        "",
+        description="Labels, separated by blanks; `r*2` lasts twice as long as r usually does, `r=1.5s` a second and a half.",
+    )
+    random: int | None = Field(
+        None, ge=1, description="Instead of labels: so many of them, drawn from the recordings' successions."
+    )
+    pairs: Literal["recorded", "any"] = Field(
+        "recorded", description="A label may follow another only where the recordings show it, or any may."
+    )
     rho: float = Field(0.0, description="Speed: states last m + ρσ² frames.")
     length: int | None = Field(None, ge=1, description="Frames in all, instead of rho.")
+    alpha: float | None = Field(
+        None,
+        gt=0,
+        description="Weight of the durations against the trajectory, eq. 18 of [H]; null: infinite, eq. 20.",
+    )
+    global_variance: bool = Field(
+        False, description="The motion varies as much as the recordings do (Toda and Tokuda)."
+    )
+
+    @model_validator(mode="after")
+    def _labels_or_random(self) -> String:
+        if bool(self.labels.strip()) == (self.random is not None):
+            raise ValueError("needs exactly one of labels and random")
+        return self
 
 
 class Film(Model):
@@ -258,6 +284,12 @@ class Tables(Model):
     experiment2: Name | None = Field(None, description="Experiment of tables 3 and 5.")
     string: Name | None = Field(
         None, description="String of figures 4, 5 and 6 and of the lengths in label_counts.csv."
+    )
+    angle: str = Field(
+        "middle3_x", description="Angle of figures 4 and 5 and of the staircase: joint and axis (z, x or y)."
+    )
+    changes: list[str] = Field(
+        ["rs", "sp", "pr"], description="Labels that figure 6 shows strips of, where the string has them."
     )
 
 
@@ -325,6 +357,8 @@ class Config(Model):
                 known(e, self.experiments, f"tables.{key}", "experiment")
         if self.tables.string is not None:
             known(self.tables.string, self.strings, "tables.string", "string")
+            if not self.strings[self.tables.string].labels:
+                raise ValueError("tables.string: a string drawn at random cannot be shown, name its labels")
         return self
 
 

@@ -15,6 +15,7 @@ from typing import Any
 from miburi import corpora, job, takes
 from miburi.config import Config, Corpus, check
 from miburi.errors import InputError
+from miburi.strings import label_of
 from miburi.takes import Take
 
 _READ = (
@@ -31,9 +32,6 @@ _READ = (
     "drop_rest_pose",
 )
 _ANNOTATED = ("folder", "keyword", "keywords", "annotations", "labels", "label_unit", "stand_ins", "joints")
-
-CHANGES = ("rs", "sp", "pr")
-"""The changes of [H], fig. 6."""
 
 
 def _with_recordings(value: Any, folder: str) -> Any:
@@ -195,12 +193,27 @@ class Flow:
         return {take: value for take, value in found.items() if value}
 
     def labels(self, string: str) -> list[str]:
-        """Different labels of a string, in the order of their first use."""
-        return list(dict.fromkeys(self.config.strings[string].labels.split()))
+        """Different labels of a string that is not drawn at random, in the order of their first use."""
+        return list(dict.fromkeys(label_of(word) for word in self.config.strings[string].labels.split()))
+
+    def is_random(self, string: str) -> bool:
+        """Whether a string is drawn from the recordings."""
+        return self.config.strings[string].random is not None
+
+    def models(self, corpus: str, words: str) -> list[str]:
+        """Models of the labels of a string's words."""
+        labels = dict.fromkeys(label_of(word) for word in words.split())
+        return [f"results/{corpus}/models/{label}.h5" for label in labels]
 
     def string(self, string: str) -> dict[str, Any]:
-        """Labels, speed and length of a string."""
-        return self.config.strings[string].model_dump(exclude={"corpus"})
+        """Speed, length and what else generation needs to know of a string."""
+        return self.config.strings[string].model_dump(exclude={"corpus", "labels", "random", "pairs"})
+
+    def words(self, string: str) -> dict[str, Any]:
+        """What a string's words are made of, and what its labels need to be trained."""
+        settings = self.config.strings[string].model_dump(include={"labels", "random", "pairs"})
+        needs = self.config.train.model_dump(include={"states", "exit", "least_intervals"})
+        return {**settings, **needs, "seed": self.config.seed}
 
     def to_play(self, experiment: str) -> dict[str, Any]:
         """What playing the queries of an experiment needs."""
@@ -255,9 +268,9 @@ class Flow:
         """A file of that corpus; `{string}` is filled in."""
         return f"results/{self.shown_corpus()}/{path}".replace("{string}", self.config.tables.string or "")
 
-    def changes(self) -> list[str]:
-        """The changes of [H], fig. 6, that the string holds."""
-        return [c for c in CHANGES if c in self.labels(self.config.tables.string or "")]
+    def changes(self, string: str) -> list[str]:
+        """The changes of [H], fig. 6, that a string holds."""
+        return [c for c in self.config.tables.changes if c in self.labels(string)]
 
     def of_corpora(self, path: str) -> list[str]:
         """A file of every corpus."""
@@ -279,8 +292,8 @@ class Flow:
         """Figures of [H] that this config's string can fill."""
         if not self.config.tables.string:
             return []
-        strips = ["results/fig6.png"] if self.changes() else []
-        return ["results/fig4.png", "results/fig5.png", *strips]
+        strips = ["results/fig6.png"] if self.changes(self.config.tables.string) else []
+        return ["results/fig4.png", "results/fig5.png", *strips, "results/staircase.png"]
 
     def shown(self) -> dict[str, list[str]]:
         """Artefacts of all corpora, strings and experiments that the report shows, by kind."""

@@ -7,6 +7,7 @@ from difflib import Match, SequenceMatcher
 
 from miburi import artefacts
 from miburi.errors import InputError
+from miburi.figures import HAND
 from miburi.formats.annotations import read_annotations
 from miburi.motion import Floats
 
@@ -68,10 +69,7 @@ def labelled_takes(
     InputError
         A take is no hand's, or takes differ in their rates.
     """
-    intervals: dict[str, list[Interval]] = {}
-    for row in read_annotations(annotations):
-        span = int(row.more["start_frame"]), int(row.more["end_frame"])
-        intervals.setdefault(row.take, []).append((*span, row.keyword))
+    intervals = read_intervals(annotations)
     takes: dict[str, Floats] = {}
     rates: dict[float, str] = {}
     for path in motions:
@@ -84,3 +82,46 @@ def labelled_takes(
         found = ", ".join(f"{take!r} has {fps:g}" for fps, take in rates.items()) or "there are no takes"
         raise InputError(f"takes of one corpus of hands need the same frames per second: {found}")
     return [(takes[name], intervals.get(name, [])) for name in sorted(takes)], next(iter(rates))
+
+
+def read_intervals(annotations: str) -> dict[str, list[Interval]]:
+    """Intervals (start, end exclusive, label) of each take, from a corpus's annotations in frames.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or lacks the columns `start_frame` and `end_frame`.
+    """
+    intervals: dict[str, list[Interval]] = {}
+    for number, row in enumerate(read_annotations(annotations), 2):
+        try:
+            span = int(row.more["start_frame"]), int(row.more["end_frame"])
+        except (KeyError, ValueError):
+            raise InputError(
+                f"{annotations}, line {number}: start_frame and end_frame are no whole numbers"
+            ) from None
+        intervals.setdefault(row.take, []).append((*span, row.keyword))
+    return dict(sorted(intervals.items()))
+
+
+def angle_of(name: str) -> tuple[int, str]:
+    """Column of an angle among the 48 of a hand, and its name in words, from "joint_axis" as "middle3_x".
+
+    Raises
+    ------
+    InputError
+        The hand has no such joint or axis.
+    """
+    joint, _, axis = name.rpartition("_")
+    if joint not in HAND.joints or axis not in ("z", "x", "y"):
+        raise InputError(
+            f"there is no angle {name!r}; expected a joint and an axis, as middle3_x: {', '.join(HAND.joints)}; z, x, y"
+        )
+    finger, number = joint.rstrip("0123456789"), joint.lstrip("abcdefghijklmnopqrstuvwxyz")
+    of = "" if finger == "thumb" else " finger"
+    words = (
+        "wrist"
+        if not number
+        else f"{finger}{of},\n{('first', 'second', 'third')[int(number) - 1]} joint"
+    )
+    return 3 * HAND.index(joint) + "zxy".index(axis), words if axis == "x" else f"{words}, {axis.upper()}"

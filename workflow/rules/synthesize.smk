@@ -1,12 +1,59 @@
-# A string of labels → the most likely motion; its length by all four ways of counting; its largest jump.
+# Successions of labels → the words of a string → the most likely motion; its length by all four ways of counting.
+
+
+rule successions:
+    input:
+        "results/{corpus}/annotations.tsv",
+    output:
+        "results/{corpus}/successions.csv",
+    log:
+        "results/logs/successions/{corpus}.log",
+    benchmark:
+        "results/benchmarks/successions/{corpus}.tsv"
+    resources:
+        mem_mb=megabytes(300),
+        runtime=minutes(5),
+    params:
+        code=code("successions.py"),
+    script:
+        "../scripts/successions.py"
+
+
+# a checkpoint, because of a string that is drawn at random nobody knows before which models it needs
+checkpoint words:
+    input:
+        annotations="results/{corpus}/annotations.tsv",
+        successions="results/{corpus}/successions.csv",
+    output:
+        "results/{corpus}/synthesis/{string}.txt",
+    log:
+        "results/logs/words/{corpus}/{string}.log",
+    benchmark:
+        "results/benchmarks/words/{corpus}/{string}.tsv"
+    priority: 10  # what is wrong with a string is said before anything is trained
+    resources:
+        mem_mb=megabytes(300),
+        runtime=minutes(5),
+    params:
+        string=lambda wildcards: FLOW.words(wildcards.string),
+        code=code("words.py"),
+    script:
+        "../scripts/words.py"
+
+
+def models_of_string(wildcards):
+    """Models of a string's labels."""
+    words = CONFIG.strings[wildcards.string].labels
+    if FLOW.is_random(wildcards.string):
+        with checkpoints.words.get(**wildcards).output[0].open() as file:
+            words = file.read()
+    return FLOW.models(wildcards.corpus, words)
 
 
 rule synthesize:
     input:
-        lambda wildcards: [
-            f"results/{wildcards.corpus}/models/{label}.h5"
-            for label in FLOW.labels(wildcards.string)
-        ],
+        words="results/{corpus}/synthesis/{string}.txt",
+        models=models_of_string,
     output:
         "results/{corpus}/synthesis/{string}.h5",
     log:
@@ -18,6 +65,7 @@ rule synthesize:
         runtime=minutes(5),
     params:
         string=lambda wildcards: FLOW.string(wildcards.string),
+        seed=CONFIG.seed,
         code=code("synthesize.py"),
     script:
         "../scripts/synthesize.py"
@@ -29,7 +77,8 @@ rule lengths:
         motion=lambda wildcards: FLOW.of_shards(wildcards.corpus, "motion"),
         annotations="results/{corpus}/annotations.tsv",
     output:
-        "results/{corpus}/synthesis/{string}.csv",
+        lengths="results/{corpus}/synthesis/{string}.csv",
+        delays="results/{corpus}/synthesis/{string}_delays.csv",
     log:
         "results/logs/lengths/{corpus}/{string}.log",
     benchmark:
@@ -38,7 +87,6 @@ rule lengths:
         mem_mb=megabytes(800, 60),
         runtime=minutes(10, 1),
     params:
-        string=lambda wildcards: FLOW.string(wildcards.string),
         settings=CONFIG.train.model_dump(),
         code=code("lengths.py"),
     script:

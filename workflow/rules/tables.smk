@@ -50,7 +50,7 @@ if CONFIG.tables.string:
             mem_mb=megabytes(500),
             runtime=minutes(5),
         params:
-            string=FLOW.string(CONFIG.tables.string)["labels"],
+            string=CONFIG.strings[CONFIG.tables.string].labels,
             simulated=FLOW.simulated(FLOW.shown_corpus()),
             code=code("label_counts.py"),
         script:
@@ -74,6 +74,11 @@ if CONFIG.tables.string:
                 category="Figures",
                 labels={"paper": "[H]", "what": "figure 5"},
             ),
+            staircase=report(
+                "results/staircase.png",
+                caption="../report/staircase.rst",
+                category="Figures",
+            ),
         log:
             "results/logs/figures/curves.log",
         benchmark:
@@ -82,6 +87,7 @@ if CONFIG.tables.string:
             mem_mb=megabytes(800, 30),
             runtime=minutes(5),
         params:
+            angle=CONFIG.tables.angle,
             simulated=FLOW.simulated(FLOW.shown_corpus()),
             code=code("curves.py"),
         script:
@@ -105,7 +111,7 @@ if CONFIG.tables.string:
             mem_mb=megabytes(1500),
             runtime=minutes(10),
         params:
-            changes=FLOW.changes(),
+            changes=FLOW.changes(CONFIG.tables.string),
             simulated=FLOW.simulated(FLOW.shown_corpus()),
             code=code("strips.py"),
         script:

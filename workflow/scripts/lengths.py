@@ -1,10 +1,19 @@
-"""A string → its length with and without exit, by exact durations and by products; its largest jumps."""
+"""A string → its lengths with and without exit, by exact durations and by products; its jumps; a stream's errors."""
 
 import csv
 
 from miburi import job, store
 from miburi.hands import labelled_takes
-from miburi.hmm import Synthesis, by_label, global_variance, largest_step, lengths, splice
+from miburi.hmm import Synthesis, by_label, delay_errors, global_variance, largest_step, lengths, splice
+
+DELAYS = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
+
+
+def write(path, header, rows):
+    with store.replaced(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(header)
+        table.writerows(rows)
 
 
 def main(snakemake):
@@ -12,7 +21,7 @@ def main(snakemake):
     takes, fps = labelled_takes(snakemake.input.motion, snakemake.input.annotations)
     settings = {k: v for k, v in snakemake.params.settings.items() if k not in ("exit", "durations")}
     settings["half"] = tuple(settings["half"])
-    string = snakemake.params.string["labels"]
+    string = synthesis.string
     intervals = by_label(takes, settings["half"])
     reference = global_variance([x for x, _ in takes], settings["half"])
     rows = [
@@ -36,10 +45,16 @@ def main(snakemake):
             "degrees",
         ),
     ]
-    with store.replaced(snakemake.output[0]) as path, open(path, "w", encoding="utf-8", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(["quantity", "value", "unit"])
-        table.writerows(rows)
+    if synthesis.lost is not None:
+        rows.append(("log-likelihood per frame, lost to global variance", f"{synthesis.lost:.4f}", ""))
+    write(snakemake.output.lengths, ["quantity", "value", "unit"], rows)
+    errors = delay_errors(synthesis.mean, synthesis.variance, DELAYS, half=settings["half"])
+    header = ["delay_frames", "delay_s", "largest_error_degrees", "rms_error_degrees"]
+    write(
+        snakemake.output.delays,
+        header,
+        [(e.delay, f"{e.delay / fps:.3f}", f"{e.largest:.3g}", f"{e.rms:.3g}") for e in errors],
+    )
 
 
 job.run(main, snakemake)  # noqa: F821

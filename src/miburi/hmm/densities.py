@@ -18,7 +18,7 @@ from miburi.hmm.windows import Floats
 
 _Work = TypeVar("_Work", bound=Callable[..., Any])
 # linear algebra by one thread, so that results do not depend on how many there are
-_one_thread: Callable[[_Work], _Work] = threadpool_limits.wrap(limits=1, user_api="blas")
+one_thread: Callable[[_Work], _Work] = threadpool_limits.wrap(limits=1, user_api="blas")
 _RARE = 1e-8  # a state with fewer expected frames keeps its Gaussian
 
 
@@ -41,7 +41,7 @@ def log_densities(x: Floats, mean: Floats, variance: Floats) -> Floats:
     return _full_log_densities(x, mean, variance)
 
 
-@_one_thread
+@one_thread
 def _full_log_densities(x: Floats, mean: Floats, variance: Floats) -> Floats:
     out = np.empty((len(x), len(mean)))
     for i, root in enumerate(np.linalg.cholesky(variance)):
@@ -87,7 +87,7 @@ def reestimate(
     return _full_reestimate(x, gamma, mean, variance, floors, kept)
 
 
-@_one_thread
+@one_thread
 def _full_reestimate(
     x: Floats, gamma: Floats, mean: Floats, variance: Floats, floors: Floats, kept: NDArray[np.bool_]
 ) -> tuple[Floats, Floats]:

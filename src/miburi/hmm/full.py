@@ -9,9 +9,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_factor, cho_solve, solveh_banded
-from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
 
 from miburi.errors import InputError
+from miburi.hmm.densities import one_thread
 from miburi.hmm.windows import Floats
 
 MOST = 4e9
@@ -26,8 +26,10 @@ class _Said(NamedTuple):
     reach: int
 
 
-@threadpool_limits.wrap(limits=1, user_api="blas")  # results do not depend on how many threads there are
-def trajectory(mean: Floats, covariance: Floats, step: NDArray[np.int64], delta: Floats, square: Floats) -> Floats:
+@one_thread
+def trajectory(
+    mean: Floats, covariance: Floats, step: NDArray[np.int64], delta: Floats, square: Floats
+) -> Floats:
     """Solve R x = r for all features together.
 
     Parameters
@@ -67,7 +69,7 @@ def trajectory(mean: Floats, covariance: Floats, step: NDArray[np.int64], delta:
     return x.reshape(frames, dims)
 
 
-@threadpool_limits.wrap(limits=1, user_api="blas")
+@one_thread
 def log_density(
     x: Floats, mean: Floats, covariance: Floats, step: NDArray[np.int64], delta: Floats, square: Floats
 ) -> float:

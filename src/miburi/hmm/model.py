@@ -55,6 +55,8 @@ class Model:
         Intervals that were too short to pass through all states.
     constant
         Number of features that do not vary (a dead sensor).
+    interval_mean, interval_square : (K, M), optional
+        Mean of each static feature, and of its square, in each interval; of features with deltas.
     """
 
     label: str
@@ -74,6 +76,8 @@ class Model:
     converged: bool = False
     left_out: int = 0
     constant: int = 0
+    interval_mean: Floats | None = None
+    interval_square: Floats | None = None
 
     @property
     def states(self) -> int:
@@ -98,6 +102,9 @@ class Model:
             for name in ("transitions", "duration_mean", "duration_variance", "log_likelihood"):
                 store.put(file, name, getattr(self, name))
             store.put(file, "exit", np.float64(self.exit))
+            if self.interval_mean is not None and self.interval_square is not None:
+                store.put(file, "interval_mean", self.interval_mean)
+                store.put(file, "interval_square", self.interval_square)
             for name in ("label", "states", "intervals", "frames", "form", "left_out", "constant"):
                 file.attrs[name] = getattr(self, name)
             file.attrs["converged"] = np.bool_(self.converged)
@@ -123,6 +130,8 @@ class Model:
             if absent:
                 raise InputError(f"{path}: the attribute {absent[0]!r} is missing")
             attrs = file.attrs
+            known = "interval_mean" in file
+            moments = int(attrs["intervals"]), d // 3
             form = str(attrs["form"])
             if form not in get_args(Form):
                 raise InputError(
@@ -148,4 +157,6 @@ class Model:
                 converged=bool(attrs["converged"]),
                 left_out=int(attrs["left_out"]),
                 constant=int(attrs["constant"]),
+                interval_mean=store.get(file, "interval_mean", moments) if known else None,
+                interval_square=store.get(file, "interval_square", moments) if known else None,
             )

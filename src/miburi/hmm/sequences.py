@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from miburi.errors import InputError
 from miburi.hmm.windows import Floats, Half, checked_frames, deltas
+from miburi.strings import untrainable
 
 
 class Joined(NamedTuple):
@@ -20,7 +21,7 @@ class Joined(NamedTuple):
     left_out: int
 
 
-def joined(sequences: Sequence[ArrayLike], states: int, exits: bool, who: str) -> Joined:
+def joined(sequences: Sequence[ArrayLike], states: int, exits: bool, who: str, least: int = 1) -> Joined:
     """Check sequences and put them end to end.
 
     With an exit, a sequence must be as long as there are states to be able to pass through all of them;
@@ -29,7 +30,7 @@ def joined(sequences: Sequence[ArrayLike], states: int, exits: bool, who: str) -
     Raises
     ------
     InputError
-        There are none, or all are too short; frames are not finite, or not as wide as the others.
+        There are none, or fewer than `least` that are long enough; frames are not finite, or not as wide as the others.
     """
     if isinstance(sequences, np.ndarray) and sequences.ndim == 2:
         raise InputError(
@@ -43,12 +44,8 @@ def joined(sequences: Sequence[ArrayLike], states: int, exits: bool, who: str) -
             raise InputError(
                 f"{who}, interval {k}: found {x.shape[1]} features, interval 0 has {checked[0].shape[1]}"
             )
-    longest = max(len(x) for x in checked)
-    if longest < states:
-        raise InputError(
-            f"{who}: the longest of {len(checked)} intervals has {longest} frames, expected {states} or "
-            "more, one for each state; record more of it, or train fewer states"
-        )
+    if why := untrainable({"": [len(x) for x in checked]}, states, exits, least):
+        raise InputError(f"{who}: {why['']}")
     kept = [x for x in checked if len(x) >= states] if exits else checked
     offsets = np.zeros(len(kept) + 1, dtype=np.int64)
     np.cumsum([len(x) for x in kept], out=offsets[1:])

@@ -50,7 +50,7 @@ def _narrow(mean, variance, step, delta, square):  # type: ignore[no-untyped-def
                 after = 3
             elif s == 1 or s == frames - 1 or step[s] != step[t]:
                 after = 0
-                while after == now or after == before:
+                while after in (now, before):
                     after += 1
                 _say(said, after, mean, variance, step[s], first, stop, s == frames - 1, delta, square)
             for m in range(_BLOCK):
@@ -80,7 +80,9 @@ def _narrow(mean, variance, step, delta, square):  # type: ignore[no-untyped-def
             for m in range(first, stop):
                 carried[2, m - first] = x[t, m]
             for m in range(_BLOCK):
-                found = carried[2, m] - lower[t + 1, 0, m] * carried[0, m] - lower[t + 2, 1, m] * carried[1, m]
+                found = (
+                    carried[2, m] - lower[t + 1, 0, m] * carried[0, m] - lower[t + 2, 1, m] * carried[1, m]
+                )
                 carried[1, m] = carried[0, m]
                 carried[0, m] = found
             for m in range(first, stop):

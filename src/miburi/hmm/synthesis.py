@@ -13,13 +13,16 @@ from numpy.typing import ArrayLike, NDArray
 from miburi import store
 from miburi.errors import InputError
 from miburi.figures import HAND
-from miburi.hmm.generation import mlpg
+from miburi.hmm import variance as spread
+from miburi.hmm.generation import log_likelihood, mlpg, steps_of
 from miburi.hmm.model import Form, Model
+from miburi.hmm.search import Staircase, joint_durations
 from miburi.hmm.timing import frames_per_state
 from miburi.hmm.training import train
 from miburi.hmm.windows import Floats
 from miburi.kinematics import hand_rotations
 from miburi.motion import Motion
+from miburi.strings import Word, parse
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,11 +42,18 @@ class Synthesis:
     mean, variance : (T, 3 M)
         Gaussians of each frame's state (the staircase).
     string
-        The labels, separated by blanks.
+        The labels, separated by blanks, with what was said of their lengths.
     fps
         Frames per second; None: not known.
     rho
         Speed: states last m + ρσ² frames.
+    alpha
+        Weight of the durations ([H], eq. 18); None: infinite, as in eq. 20.
+    lost
+        Log-likelihood per frame that the trajectory lost against the likeliest one to have the recordings'
+        variance; None: it is the likeliest.
+    why_not
+        Why the global variance, though wanted, was left out; empty: it was not.
     """
 
     trajectory: Floats
@@ -55,6 +65,9 @@ class Synthesis:
     string: str
     fps: float | None = None
     rho: float = 0.0
+    alpha: float | None = None
+    lost: float | None = None
+    why_not: str = ""
 
     def __len__(self) -> int:
         return len(self.trajectory)
@@ -62,7 +75,7 @@ class Synthesis:
     @property
     def labels(self) -> tuple[str, ...]:
         """The string's P labels."""
-        return tuple(self.string.split())
+        return tuple(self.label[start] for start in self.boundaries[:-1])
 
     def motion(self, name: str = "") -> Motion:
         """The hand that the trajectory moves, on `figures.HAND`.
@@ -83,8 +96,10 @@ class Synthesis:
             store.put(file, "label", list(self.label))
             file.attrs["string"] = self.string
             file.attrs["rho"] = self.rho
-            if self.fps is not None:
-                file.attrs["fps"] = self.fps
+            file.attrs["why_not"] = self.why_not
+            for name in ("fps", "alpha", "lost"):
+                if (value := getattr(self, name)) is not None:
+                    file.attrs[name] = value
 
     @classmethod
     def open(cls, path: str | os.PathLike[str]) -> Synthesis:
@@ -112,8 +127,9 @@ class Synthesis:
                 mean=store.get(file, "mean", (t, 3 * m)),
                 variance=store.get(file, "variance", (t, 3 * m)),
                 string=string,
-                fps=float(file.attrs["fps"]) if "fps" in file.attrs else None,
                 rho=float(file.attrs["rho"]),
+                why_not=str(file.attrs.get("why_not", "")),
+                **{n: float(file.attrs[n]) for n in ("fps", "alpha", "lost") if n in file.attrs},
             )
 
 
@@ -136,36 +152,19 @@ def hand_motion(angles: ArrayLike, fps: float | None, name: str = "") -> Motion:
 def check_string(
     string: str | Sequence[str], labels: Sequence[str] | Mapping[str, object]
 ) -> tuple[str, ...]:
-    """The labels of a string, each of them known.
-
-    Parameters
-    ----------
-    string
-        Labels separated by blanks, or a sequence of them.
-    labels
-        Those that are known.
-
-    Raises
-    ------
-    InputError
-        The string is empty, or a label is unknown; the sentence names it, its place and those that are known.
-    """
-    found = tuple(string.split()) if isinstance(string, str) else tuple(str(s) for s in string)
-    if not found:
-        raise InputError("the string of labels is empty")
-    for place, label in enumerate(found, 1):
-        if label not in labels:
-            raise InputError(
-                f"string {' '.join(found)!r}: label {place} is {label!r}, "
-                f"known are {', '.join(sorted(labels))}"
-            )
-        if label.split() != [label]:
-            raise InputError(f"label {label!r} has a blank in it, which separates the labels of a string")
-    return found
+    """The labels of a string, each of them known, without what is said of their lengths (`strings.parse`)."""
+    return tuple(word.label for word in parse(string, labels))
 
 
 def synthesize(
-    models: Mapping[str, Model], string: str | Sequence[str], *, rho: float = 0.0, length: int | None = None
+    models: Mapping[str, Model],
+    string: str | Sequence[str],
+    *,
+    rho: float = 0.0,
+    length: int | None = None,
+    alpha: float | None = None,
+    global_variance: bool = False,
+    seed: int | Sequence[int] = 0,
 ) -> Synthesis:
     """Generate the motion of a string of labels.
 
@@ -174,11 +173,22 @@ def synthesize(
     models
         By label.
     string
-        Labels separated by blanks, or a sequence of them.
+        Labels separated by blanks, or a sequence of them; `r*2` lasts twice as long as r, `r=1.5s` a second and
+        a half.
     rho
         Speed: a state lasts ⌊m + ρσ² + ½⌋ frames, at least one; 0 is [H], eq. 20.
     length
-        Frames in all; ρ is found so that the states' durations add up to it.
+        Frames in all; ρ is found so that the states' durations add up to it. Words with a length of their own in
+        seconds keep it.
+    alpha
+        Weight of the durations against the trajectory ([H], eq. 18); durations of the same sum are then searched
+        together with it, from eq. 20 on. None: infinite, which is eq. 20.
+    global_variance
+        The trajectory is to vary over the string as much as recorded intervals do (Toda and Tokuda); it is less
+        likely then, `lost` says how much. Left out, with `why_not`, for strings of one or two labels, labels with
+        one interval, and full covariances.
+    seed
+        Of the draw of recorded intervals whose variance is counted.
 
     Returns
     -------
@@ -187,38 +197,81 @@ def synthesize(
     Raises
     ------
     InputError
-        A label is unknown, models do not fit together, or the length cannot be had.
-
-    Notes
-    -----
-    Of a full covariance, generation uses the variances alone.
+        A label is unknown, models do not fit together, the length cannot be had, or α is wanted with full
+        covariances.
     """
-    labels = check_string(string, models)
-    chain = [models[label] for label in labels]
+    words = parse(string, models)
+    chain = [models[word.label] for word in words]
     _check_together(chain)
-    frames, rho = frames_per_state(*_durations(chain), rho=rho, length=length)
-    states = np.concatenate([np.arange(m.states) for m in chain])
+    is_full = any(m.covariance is not None for m in chain)
+    half = chain[0].half
+    lasting, spreads = _durations(chain, words)
+    frames, rho = frames_per_state(lasting, spreads, rho=rho, length=length)
+    mean = np.concatenate([m.mean for m in chain])
+    variance = np.concatenate([m.variance for m in chain])
+    if alpha is not None:
+        if is_full:
+            raise InputError(f"alpha is {alpha}: durations are searched with diagonal covariances only")
+        stairs = Staircase(mean, variance, lasting + rho * spreads, spreads)
+        frames = joint_durations(stairs, frames, alpha, half=half)
     ends = np.cumsum(frames)[np.cumsum([m.states for m in chain]) - 1]
     boundaries = np.concatenate([[0], ends]).astype(np.int64)
-    mean = np.concatenate([m.mean for m in chain]).repeat(frames, axis=0)
-    variance = np.concatenate([m.variance for m in chain]).repeat(frames, axis=0)
+    gaussians = np.concatenate([_covariances(m) for m in chain]) if is_full else variance
+    x = mlpg(mean, gaussians, half=half, frames=frames)
+    lost, why_not = None, spread.why_not(chain) if global_variance else ""
+    if global_variance and not why_not:
+        usual, wanted = x, spread.expected_spread(chain, np.diff(boundaries), seed)
+        x = spread.with_spread(mean, variance, steps_of(len(mean), frames), wanted, half)
+        gone = [log_likelihood(c, mean, variance, half=half, frames=frames) for c in (usual, x)]
+        lost = (gone[0] - gone[1]) / len(x)
+    labels = np.array([word.label for word in words], dtype=object)
     return Synthesis(
-        trajectory=mlpg(mean, variance, half=chain[0].half),
-        state=states.repeat(frames),
-        label=tuple(np.array(labels, dtype=object).repeat(np.diff(boundaries)).tolist()),
+        trajectory=x,
+        state=np.concatenate([np.arange(m.states) for m in chain]).repeat(frames),
+        label=tuple(labels.repeat(np.diff(boundaries)).tolist()),
         boundaries=boundaries,
-        mean=mean,
-        variance=variance,
-        string=" ".join(labels),
+        mean=mean.repeat(frames, axis=0),
+        variance=variance.repeat(frames, axis=0),
+        string=" ".join(word.text for word in words),
         fps=chain[0].fps,
         rho=rho,
+        alpha=alpha,
+        lost=lost,
+        why_not=why_not,
     )
 
 
-def _durations(chain: Sequence[Model]) -> tuple[Floats, Floats]:
-    return np.concatenate([m.duration_mean for m in chain]), np.concatenate(
-        [m.duration_variance for m in chain]
-    )
+def _covariances(model: Model) -> Floats:
+    if model.covariance is not None:
+        return model.covariance
+    return np.apply_along_axis(np.diag, 1, model.variance)
+
+
+def _durations(chain: Sequence[Model], words: Sequence[Word]) -> tuple[Floats, Floats]:
+    """Mean and variance of the durations of all states; of a word with a length of its own, scaled to it."""
+    means, variances = [], []
+    for place, (model, word) in enumerate(zip(chain, words, strict=True), 1):
+        mean, variance = model.duration_mean * word.factor, model.duration_variance * word.factor**2
+        if word.seconds is not None:
+            who = f"string {' '.join(w.text for w in words)!r}, label {place}, {word.text!r}"
+            mean, variance = _of_seconds(model, word.seconds, who), np.zeros_like(variance)
+        means.append(mean)
+        variances.append(variance)
+    return np.concatenate(means), np.concatenate(variances)
+
+
+def _of_seconds(model: Model, seconds: float, who: str) -> Floats:
+    """Frames of a model's states that last so long together, in proportion to their mean durations."""
+    if model.fps is None:
+        raise InputError(f"{who}: the frame rate is not known; train the models with fps")
+    wanted = int(np.floor(seconds * model.fps + 0.5))
+    if wanted < model.states:
+        raise InputError(
+            f"{who}: {wanted} frames at {model.fps:g} per second, expected {model.states} or more, one for each state"
+        )
+    share = model.duration_mean * (wanted / model.duration_mean.sum())
+    frames, _ = frames_per_state(share, share, length=wanted)
+    return frames.astype(np.float64)
 
 
 def _check_together(chain: Sequence[Model]) -> None:
@@ -239,7 +292,8 @@ def _check_together(chain: Sequence[Model]) -> None:
 
 def total_length(models: Mapping[str, Model], string: str | Sequence[str], *, rho: float = 0.0) -> int:
     """Frames that a string lasts: the sum of its states' rounded mean durations ([H], eqs. 20 and 21)."""
-    frames, _ = frames_per_state(*_durations([models[s] for s in check_string(string, models)]), rho=rho)
+    words = parse(string, models)
+    frames, _ = frames_per_state(*_durations([models[w.label] for w in words], words), rho=rho)
     return int(frames.sum())
 
 

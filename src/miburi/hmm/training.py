@@ -39,6 +39,7 @@ def train(
     floor: float = 0.01,
     reference: ArrayLike | None = None,
     durations: Form = "exact",
+    least_intervals: int = 1,
     half: Half = (1, 1),
     label: str = "",
     fps: float | None = None,
@@ -68,6 +69,8 @@ def train(
         sequences.
     durations
         Form of the state durations: "exact" or "product" (`durations`).
+    least_intervals
+        A label with fewer intervals that are long enough is refused.
     half
         Half lengths of the delta windows that the observations were made with; kept for generation.
     label, fps
@@ -91,7 +94,7 @@ def train(
     who = f"label {label!r}" if label else "train"
     _check(who, states, covariance, iterations, tolerance, floor, durations)
     half = checked_half(half)
-    data = joined(sequences, states, exit, who)
+    data = joined(sequences, states, exit, who, least_intervals)
     varies = _reference(reference, data.x, who)
     floors = np.maximum(floor * varies, SMALLEST)
     start = _start(data, states, covariance, exit, floors)
@@ -118,7 +121,20 @@ def train(
         converged=converged,
         left_out=data.left_out,
         constant=int((varies <= SMALLEST).sum()),
+        **_interval_moments(data),
     )
+
+
+def _interval_moments(data: Joined) -> dict[str, Floats]:
+    """Means of the static features and of their squares in each interval, where features have deltas."""
+    if data.x.shape[1] % 3:
+        return {}
+    static, count = data.x[:, : data.x.shape[1] // 3], np.diff(data.offsets)[:, None]
+    starts = data.offsets[:-1]
+    return {
+        "interval_mean": np.add.reduceat(static, starts) / count,
+        "interval_square": np.add.reduceat(static**2, starts) / count,
+    }
 
 
 def _check(

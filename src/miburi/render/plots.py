@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -185,6 +185,27 @@ def staircase(
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3)
 
 
+def by_states(path: Path, curves: Mapping[str, Mapping[int, float]], *, ylabel: str, title: str = "") -> None:
+    """A figure of models with 1, 2, … states, one curve for each form of covariance; [H]'s 3 states are marked.
+
+    Parameters
+    ----------
+    curves
+        Name → number of states → value. Each has axes of its own: full covariances may do much worse.
+    """
+    if not curves or not all(curves.values()):
+        raise InputError(f"{path}: no model to show")
+    with _axes(path, title, across=len(curves)) as axes:
+        for one, (name, values) in zip(axes, curves.items(), strict=True):
+            states = sorted(values)
+            one.axvline(3, color=_GREY, lw=0.6, zorder=0)
+            one.plot(states, [values[n] for n in states], "o-", color=_INK, ms=3.2)
+            one.set_title(name, fontsize=8.0)
+            one.set_xticks(states)
+            one.set_xlabel("states")
+        axes[0].set_ylabel(ylabel)
+
+
 def measures(
     path: Path,
     bars: Sequence[Bar],
@@ -273,15 +294,16 @@ def _settings() -> Any:
 
 
 @contextmanager
-def _axes(path: Path, title: str, height: float = 2.1) -> Iterator[Any]:
-    """Axes to draw on; saved whole to the path, without stamps."""
+def _axes(path: Path, title: str, height: float = 2.1, across: int | None = None) -> Iterator[Any]:
+    """Axes to draw on, or so many side by side; saved whole to the path, without stamps."""
     kind = os.fspath(path).rsplit(".", 1)[-1].lower()
     if kind not in _STAMPS:
         raise InputError(f"{path}: cannot be written; plots are .png, .svg or .pdf")
     with matplotlib.rc_context(_settings()):
         plot = Figure(figsize=(6.3, height))
         FigureCanvasAgg(plot)
-        axes = plot.add_subplot()
+        axes = plot.add_subplot() if across is None else plot.subplots(1, across, squeeze=False)[0]
+        plot.subplots_adjust(wspace=0.3)
         yield axes
         if title:
             plot.suptitle(title, x=0.01, y=0.96 + 0.08 / height, ha="left", va="bottom", fontsize=8.5)

@@ -59,6 +59,11 @@ FIGURES = {
         "Figure 5 of [H]: recordings put end to end",
         "The same labels cut from the recordings: similar, but with steps at the joins.",
     ),
+    "staircase": (
+        "What the model does",
+        "The means of the states as steps with ±σ around them, and the trajectory that is likeliest with the deltas' "
+        "Gaussians too.",
+    ),
     "fig6": (
         "Figure 6 of [H]: changes",
         "Strips of rendered frames of the changes between the hand's poses.",
