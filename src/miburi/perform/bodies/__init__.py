@@ -38,11 +38,24 @@ def annotations(entries: Iterable[Plan], seed: int) -> list[Annotation]:
     return take.annotations(entries, seed)
 
 
-def write(folder: str | os.PathLike[str], seed: int, takes: Iterable[str] | None = None, small: bool = False) -> None:
+def write(
+    folder: str | os.PathLike[str], seed: int, takes: Iterable[str] | None = None, small: bool = False
+) -> None:
     """Perform and write takes: see `miburi.perform.bodies.take.write`."""
     from miburi.perform.bodies import take
 
     take.write(folder, seed, takes, small)
 
 
-__all__ = ["KEYWORDS", "OTHERS", "PERFORMERS", "Clip", "Plan", "annotations", "imagine", "perform", "plan", "write"]
+__all__ = [
+    "KEYWORDS",
+    "OTHERS",
+    "PERFORMERS",
+    "Clip",
+    "Plan",
+    "annotations",
+    "imagine",
+    "perform",
+    "plan",
+    "write",
+]

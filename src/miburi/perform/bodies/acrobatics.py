@@ -7,7 +7,6 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from miburi.perform.bodies import people
 from miburi.perform.bodies.gestures import Span
 from miburi.perform.bodies.score import SIDES, Score, Vector
 from miburi.perform.bodies.steps import home, stand, walk
@@ -38,7 +37,9 @@ def leg(
     """Bring a foot that is in the air to a place of its hip's frame (outwards, up, ahead; metres for 1.75 m)."""
     b.move(f"{side}_foot", start, end, place, "hip", through=through)
     ankle, loose = f"{side}_ankle", b.last(f"{side}_ankle").value
-    if loose[0] < 1.0:  # soon after the foot has left the ground, as long as shank and ground still agree on it
+    if (
+        loose[0] < 1.0
+    ):  # soon after the foot has left the ground, as long as shank and ground still agree on it
         first = min(_LOOSENED, 0.7 * (end - start))
         b.move(ankle, start, start + first, (1.0, 0.5 * (loose[1] + flex) if loose[1] else flex))
         start += first
@@ -95,14 +96,21 @@ def sweep(b: Score, side: str, start: float, end: float, value: Vector, frame: s
             way = a / far + z / near + (0.0, 0.0, 0.8 * max(0.0, -(a @ z) / (far * near)))
             middle = 0.5 * (far + near) * way / np.linalg.norm(way)
             half = max(before.t, start) * 0.5 + 0.5 * end
-            b.move(f"{side}_hand", start, half, tuple(middle.tolist()), "arm", through=True, exact=True, even=True)
+            b.move(
+                f"{side}_hand",
+                start,
+                half,
+                tuple(middle.tolist()),
+                "arm",
+                through=True,
+                exact=True,
+                even=True,
+            )
             start = half
     b.reach(side, start, end, value, frame, arc=0.0, exact=True)
 
 
-def palms(
-    b: Score, side: str, start: float, end: float, left: float, ahead: float, yaw: float = 0.0
-) -> None:
+def palms(b: Score, side: str, start: float, end: float, left: float, ahead: float, yaw: float = 0.0) -> None:
     """Put a hand flat on the floor, in the performer's own frame; its fingers point to `yaw` degrees."""
     k = b.who.height / 1.75
     b.reach(side, start, end, (left, WRIST * k, ahead), "stage", arc=0.0, exact=True)
@@ -119,7 +127,12 @@ def unpalm(b: Score, start: float, seconds: float = 0.25) -> None:
 
 
 def on_hands(
-    b: Score, middle: Vector, turn: Vector, trunk: Vector = (0.0, 0.0, 0.0), far: float = 0.95, upright: float = 0.0
+    b: Score,
+    middle: Vector,
+    turn: Vector,
+    trunk: Vector = (0.0, 0.0, 0.0),
+    far: float = 0.95,
+    upright: float = 0.0,
 ) -> Vector:
     """Where the root is when straight arms carry: (left, up, ahead) in the performer's own frame, metres.
 
@@ -141,7 +154,9 @@ def on_hands(
     place, frame = np.zeros(3), hips
     for share, step in ((0.25, 0.04), (0.4, 0.075), (0.35, 0.075)):
         place = place + frame.apply([0.0, step * h, 0.0])
-        frame = frame * Rotation.from_euler("YXZ", [share * trunk[2], share * trunk[0], share * trunk[1]], True)
+        frame = frame * Rotation.from_euler(
+            "YXZ", [share * trunk[2], share * trunk[0], share * trunk[1]], True
+        )
     shoulders = place + frame.apply([0.0, 0.098 * h, 0.0])
     rise = (1 - upright) * frame.apply([0.0, -1.0, 0.0]) + [0.0, upright, 0.0]
     rise /= np.linalg.norm(rise)
@@ -163,7 +178,9 @@ def on_foot(b: Score, lean: float, rise: float = 0.0, ahead: float = 0.0) -> Vec
     return (0.0, high * math.cos(a), 0.25 * b.who.ball_ahead + high * math.sin(a) + ahead)
 
 
-def crouch(b: Score, seconds: float, deep: float, back: float, *, arms: Vector = (0.15, -0.75, -0.45)) -> None:
+def crouch(
+    b: Score, seconds: float, deep: float, back: float, *, arms: Vector = (0.15, -0.75, -0.45)
+) -> None:
     """Bend hips and knees before a jump, arms back."""
     t, k = b.now, b.who.height / 1.75
     b.pelvis(t, t + seconds, 0.0, -deep * k, -back * k)
@@ -260,13 +277,12 @@ def backflip(b: Score) -> Span:
 def jump_kick(b: Score) -> Span:
     """A step or two, off one foot, and the other leg kicks in the air."""
     k, who = b.who.height / 1.75, b.who
-    start = b.now
     count = int(b.rng.integers(1, 3))
     walk(b, count, length=0.5 * k, seconds=b.vary(0.46, 0.02))
     still(b)
-    side = b.hand if count % 2 else b.hand
+    side = b.hand
     other = b.other(side)
-    t = b.now
+    start = b.now
     crouch(b, b.beat(0.42), b.vary(0.2, 0.02), 0.08)
     t, push = b.now, b.vary(0.24, 0.01)
     up = t + push
@@ -308,9 +324,9 @@ def jump_kick(b: Score) -> Span:
 def hand_flip(b: Score) -> Span:
     """Forward over both hands: a step, the hands go down, the legs whip over, a short flight, both feet."""
     k, who = b.who.height / 1.75, b.who
-    start = b.now
     walk(b, int(b.rng.integers(1, 3)), length=0.5 * k, seconds=b.vary(0.46, 0.02))
     still(b)
+    start = b.now
     side = b.hand
     other = b.other(side)
     t = b.now
@@ -429,9 +445,7 @@ def cartwheel(b: Score) -> Span:
     unpalm(b, t - 0.3 * gap)
     root(b, t, t + gap, (0.0, 0.82 * k, one - 0.16 * k), through=True)
     b.turn(t, t + gap, turned * 1.05, 0.0, -sign * 268.0, through=True, even=True)
-    plant(
-        b, other, t - 0.3 * gap, t + 0.9 * gap, b.world(0.0, 0.0, one), b.heading + 1.3 * turned, tip=18.0
-    )
+    plant(b, other, t - 0.3 * gap, t + 0.9 * gap, b.world(0.0, 0.0, one), b.heading + 1.3 * turned, tip=18.0)
     t += gap
     b.reach(other, t, t + 2 * gap, (0.35, 0.6, 0.1), arc=0.0, exact=True)
     unpalm(b, t)
@@ -510,9 +524,19 @@ def _come_down(b: Score, t: float, ahead: float, side: str) -> float:
     t += swing
     b.turn(t, t + swing, 0.0, 108.0, 0.0, through=True, even=True)
     root(b, t, t + swing, on_hands(b, palm, (0.0, 108.0, 0.0), (6.0, 0.0, 0.0), 0.95, 0.7), through=True)
-    plant(b, side, t - 0.1, t + 0.8 * swing, b.world(b.out(side) * 0.06 * k, 0.0, 0.34 * k), b.heading, tip=25.0)
+    plant(
+        b, side, t - 0.1, t + 0.8 * swing, b.world(b.out(side) * 0.06 * k, 0.0, 0.34 * k), b.heading, tip=25.0
+    )
     t += swing
-    plant(b, other, t - 0.3, t + 0.4 * swing, b.world(b.out(other) * 0.08 * k, 0.0, 0.12 * k), b.heading, tip=20.0)
+    plant(
+        b,
+        other,
+        t - 0.3,
+        t + 0.4 * swing,
+        b.world(b.out(other) * 0.08 * k, 0.0, 0.12 * k),
+        b.heading,
+        tip=20.0,
+    )
     root(b, t, t + swing, (0.0, who.standing - 0.12 * k, 0.2 * k), through=True)
     b.turn(t, t + swing, 0.0, 40.0, 0.0, through=True, even=True)
     unpalm(b, t - 0.05)
@@ -539,11 +563,21 @@ def handstand(b: Score) -> Span:
         span = b.beat(0.55, 0.2)
         tilt = b.vary(178.0, 3.0)
         bend = b.vary(-6.0, 2.0)
-        root(b, t, t + span, on_hands(b, palm, (b.vary(0.0, 1.0), tilt, 0.0), (bend, 0.0, 0.0), 0.95), through=True)
+        root(
+            b,
+            t,
+            t + span,
+            on_hands(b, palm, (b.vary(0.0, 1.0), tilt, 0.0), (bend, 0.0, 0.0), 0.95),
+            through=True,
+        )
         b.turn(t, t + span, b.vary(0.0, 1.5), tilt - b.rest_pitch, b.vary(0.0, 1.0), through=True, even=True)
         b.move("trunk", t, t + span, (bend, b.vary(0.0, 2.0), b.vary(0.0, 2.0)), exact=True)
         for s in SIDES:
-            reach = {"straight": (0.03, -0.83, 0.0), "split": (0.04, -0.76, b.out(s) * 0.35), "bent": (0.06, -0.62, -0.16)}
+            reach = {
+                "straight": (0.03, -0.83, 0.0),
+                "split": (0.04, -0.76, b.out(s) * 0.35),
+                "bent": (0.06, -0.62, -0.16),
+            }
             place = tuple(v + float(b.rng.normal(0.0, 0.012)) for v in reach[bent])
             leg(b, s, t, t + span, place, b.vary(42.0, 4.0))
         t += span
