@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from miburi.perform.bodies.acrobatics import hands, leg, legs, lift, palms, plant, root, still, tiptoe, unpalm
 from miburi.perform.bodies.gestures import Span
+from miburi.perform.bodies.limbs import hands, leg, legs, lift, palms, plant, root, still, tiptoe, unpalm
 from miburi.perform.bodies.score import SIDES, Score
 from miburi.perform.bodies.steps import home, stand
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from miburi.perform.bodies.acrobatics import (
+from miburi.perform.bodies.gestures import Span
+from miburi.perform.bodies.limbs import (
     crouch,
     land,
     leg,
@@ -17,7 +18,6 @@ from miburi.perform.bodies.acrobatics import (
     tiptoe,
     under,
 )
-from miburi.perform.bodies.gestures import Span
 from miburi.perform.bodies.score import SIDES, Score
 from miburi.perform.bodies.steps import home, stand, swing, turn_round
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from miburi.perform.bodies.acrobatics import hands, leg, lift, plant, root, still, sweep, tiptoe
 from miburi.perform.bodies.gestures import Span
+from miburi.perform.bodies.limbs import hands, leg, lift, plant, root, still, sweep, tiptoe
 from miburi.perform.bodies.score import SIDES, Score, Vector
 from miburi.perform.bodies.steps import home, stand
 
