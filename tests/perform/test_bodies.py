@@ -471,8 +471,8 @@ def test_takes_do_not_depend_on_each_other(tmp_path: Path) -> None:
     bodies.write(tmp_path / "a", SEED, [one, two], small=True)
     bodies.write(tmp_path / "b", SEED, [two], small=True)
     assert (tmp_path / "a" / f"{two}.bvh").read_bytes() == (tmp_path / "b" / f"{two}.bvh").read_bytes()
-    rows = bodies.annotations(entries, SEED)
-    assert [r for r in rows if r.take == two] == bodies.annotations([entries[4]], SEED)
+    rows = bodies.annotate(entries, SEED)
+    assert [r for r in rows if r.take == two] == bodies.annotate([entries[4]], SEED)
     assert [r for r in rows if r.take == two] == bodies.perform(entries[4], SEED)[1]
     back = formats.read(tmp_path / "b" / f"{two}.bvh")
     motion, _ = bodies.perform(entries[4], SEED)

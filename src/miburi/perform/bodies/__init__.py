@@ -31,11 +31,11 @@ def imagine(keyword: str, performer_seed: int | str) -> Motion:
     return take.imagine(keyword, performer_seed)
 
 
-def annotations(entries: Iterable[Plan], seed: int) -> list[Annotation]:
-    """What is done when: see `miburi.perform.bodies.take.annotations`."""
+def annotate(entries: Iterable[Plan], seed: int) -> list[Annotation]:
+    """What is done when: see `miburi.perform.bodies.take.annotate`."""
     from miburi.perform.bodies import take
 
-    return take.annotations(entries, seed)
+    return take.annotate(entries, seed)
 
 
 def write(
@@ -53,7 +53,7 @@ __all__ = [
     "PERFORMERS",
     "Clip",
     "Plan",
-    "annotations",
+    "annotate",
     "imagine",
     "perform",
     "plan",

@@ -174,14 +174,14 @@ def perform(entry: Plan, seed: int) -> tuple[Motion, list[Annotation]]:
     motion
         Metres, at the take's true rate, without its rest pose.
     annotations
-        As `annotations` gives them.
+        As `annotate` gives them.
     """
     b, done = compose(entry, seed)
     motion = embody(b, store.seed(seed, "everyday", entry.take, "unrest"), entry.take, entry.fps)
     return motion, _rows(entry, b, done)
 
 
-def annotations(entries: Iterable[Plan], seed: int) -> list[Annotation]:
+def annotate(entries: Iterable[Plan], seed: int) -> list[Annotation]:
     """What is done when, of some takes.
 
     Returns
@@ -262,4 +262,4 @@ def write(
         )
 
 
-__all__ = ["KEYWORDS", "MOTIONS", "annotations", "compose", "imagine", "perform", "write"]
+__all__ = ["KEYWORDS", "MOTIONS", "annotate", "compose", "imagine", "perform", "write"]
