@@ -1,7 +1,7 @@
 """Contact sheets of what the simulated people do, for docs/everyday.md, or beside real takes to look at.
 
-    python tools/everyday_sheets.py                      writes docs/everyday/{keyword}.png
-    python tools/everyday_sheets.py FOLDER [KEYWORD …]   the same elsewhere
+python tools/everyday_sheets.py                      writes docs/everyday/{keyword}.png
+python tools/everyday_sheets.py FOLDER [KEYWORD …]   the same elsewhere
 """
 
 from __future__ import annotations
@@ -27,7 +27,9 @@ def main(folder: str = str(ROOT / "docs" / "everyday"), *keywords: str) -> None:
     plans = bodies.plan(2011)
     for keyword in keywords or bodies.KEYWORDS:
         entry, clip = next((p, c) for p in plans for c in p.clips if c.keyword == keyword)
-        alone = Plan(f"{entry.performer} sheet {keyword}", entry.performer, 0.0, (keyword,), (_few(clip),), 60.0, False)
+        alone = Plan(
+            f"{entry.performer} sheet {keyword}", entry.performer, 0.0, (keyword,), (_few(clip),), 60.0, False
+        )
         motion, rows = take.perform(alone, 2011)
         row = next(r for r in rows if r.keyword == keyword)
         shown = evenly(round(row.start_s * 60), min(round(row.end_s * 60), len(motion) - 1), COLUMNS * ROWS)

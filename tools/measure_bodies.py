@@ -28,11 +28,21 @@ ROOT = Path(__file__).parents[1]
 FIGURES = ROOT / "tests" / "perform" / "real.json"
 LIMBS = {"hands": ("l_hand", "r_hand"), "feet": ("l_foot", "r_foot"), "trunk": ("neck", "waist")}
 SMOOTH, WINDOW = 0.04, 3.0
-ARMS = ("call", "respond", "guide", "bye", "byebye", "raise-up-right-hand", "raise-up-left-hand", "wave-right-hand")
+ARMS = (
+    "call",
+    "respond",
+    "guide",
+    "bye",
+    "byebye",
+    "raise-up-right-hand",
+    "raise-up-left-hand",
+    "wave-right-hand",
+)
 GROUND = ("85_*", "cartwheel", "back handspring", "hand stand kicks", "breakdance on hands and feet", "49_*")
 ROUND = ("ArmCircle", "rotateArmsBothBackward1Reps", "both_arms_rotation", "rotate_arms", "arm_rotation",
-         "arm_circle", "right_arm_rotation", "left_arm_rotation", "UpDown", "ToeTouchTwoHands", "wave-both-hands")  # fmt: skip
-SWIM = {"hands": ROUND, "feet": ("01_*", "sit and swing legs", "KneeRaise"), "trunk": ("01_*", "lieDownFloor", "squat1Reps")}
+         "arm_circle", "right_arm_rotation", "left_arm_rotation", "UpDown", "ToeTouchTwoHands",
+         "wave-both-hands")  # fmt: skip
+SWIM = {"hands": ROUND}  # nobody swims in the recordings
 LIKE: dict[str, tuple[str, ...] | dict[str, tuple[str, ...]]] = {
     "right punch": ("punch", "boxing", "right punch", "left punch", "slash", "86_01"),
     "squats": ("squat1Reps", "Squat", "squat"),
@@ -51,7 +61,16 @@ LIKE: dict[str, tuple[str, ...] | dict[str, tuple[str, ...]]] = {
     "spins": ("05_*", "49_*", "dance-short"),
     "handstands": GROUND,
     "somersault": (*GROUND, "lieDownFloor"),
-    "jump kick": ("kickLFront1Reps", "kick", "leg_kick", "front kick, right leg", "forward jump", "jump", "02_*", "16_*"),
+    "jump kick": (
+        "kickLFront1Reps",
+        "kick",
+        "leg_kick",
+        "front kick, right leg",
+        "forward jump",
+        "jump",
+        "02_*",
+        "16_*",
+    ),
     "front hand flip": GROUND,
     "rug pull fall": ("85_*", "01_*", "lieDownFloor", "hopBothLegs1hops"),
     "Russian dance": ("85_*", "KneeRaise", "hopBothLegs1hops", "jump_on_left_leg", "jump_on_right_leg"),
@@ -85,10 +104,8 @@ def slide(motion: Motion) -> list[float]:
     s = motion.skeleton
     lower = [j.lower() for j in s.joints]
     found = []
-    for toe in ("toe",):
-        for j, name in enumerate(lower):
-            if toe not in name or "end" in name:
-                continue
+    for j, name in enumerate(lower):
+        if "toe" in name and "end" not in name:
             x = gaussian_filter1d(motion.positions()[:, j], 0.02 * motion.fps, axis=0)
             speed = np.linalg.norm(np.gradient(x, 1 / motion.fps, axis=0), axis=1)
             low = (x[:, 1] < np.percentile(x[:, 1], 5) + 0.03) & (speed < 0.15)
@@ -110,7 +127,9 @@ def clips(recorded: str) -> Iterator[tuple[str, str, Motion]]:
     for shard in plan.shards["bodies"]:
         reading = plan.to_read("bodies", shard)
         for name, subject, path, group in reading["takes"]:
-            motions[name] = recordings.read_take(Take(name, subject, path, group, 0.0), reading["groups"][group])
+            motions[name] = recordings.read_take(
+                Take(name, subject, path, group, 0.0), reading["groups"][group]
+            )
     reading = plan.to_annotate("bodies")
     takes = [Take(*row, 0.0) for row in reading["takes"]]
     lengths = {name: (len(m), m.fps) for name, m in motions.items()}
@@ -154,7 +173,10 @@ def real(recorded: str) -> None:
                 band[what] = [round(float(v), 3) for v in np.percentile([r[what] for r in rows], [5, 50, 95])]
         bands[keyword] = {"like": wanted, "clips": min(count), "band": band}
     spread = [round(float(v), 4) for v in np.percentile(slides, [5, 50, 95])]
-    about = "Figures of tools/measure_bodies.py over HDM05, Bandai-Namco and CMU recordings; bands: 5th, 50th, 95th percentile of clips"
+    about = (
+        "Figures of tools/measure_bodies.py over HDM05, Bandai-Namco and CMU recordings; "
+        "bands: 5th, 50th, 95th percentile of clips"
+    )
     data = {"about": about, "slide_m_per_s": spread, "stands": len(slides), "keywords": bands}
     FIGURES.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
 

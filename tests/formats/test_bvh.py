@@ -418,6 +418,6 @@ def test_numbers_are_written_as_percent_formatting_does(table: np.ndarray, scale
     got = [line.split(" ") for line in numerals.six(table).decode().splitlines()]
     for row, words in zip(table.tolist(), got, strict=True):
         for value, word in zip(row, words, strict=True):
-            twin = "%.6f" % value
+            twin = f"{value:.6f}"
             assert len(word.partition(".")[2]) == 6 and word != "-0.000000"
             assert word == twin or abs(float(word) - value) <= 1e-6 + 1e-15 * abs(value)

@@ -13,7 +13,7 @@ def main(snakemake):
     if p.takes:
         bodies.write(first.parent, p.seed, p.takes, small=p.small)
     else:
-        write_annotations(first, bodies.annotations(bodies.plan(p.seed, small=p.small), p.seed))
+        write_annotations(first, bodies.annotate(bodies.plan(p.seed, small=p.small), p.seed))
 
 
 job.run(main, snakemake)  # noqa: F821

@@ -31,18 +31,31 @@ def imagine(keyword: str, performer_seed: int | str) -> Motion:
     return take.imagine(keyword, performer_seed)
 
 
-def annotations(entries: Iterable[Plan], seed: int) -> list[Annotation]:
-    """What is done when: see `miburi.perform.bodies.take.annotations`."""
+def annotate(entries: Iterable[Plan], seed: int) -> list[Annotation]:
+    """What is done when: see `miburi.perform.bodies.take.annotate`."""
     from miburi.perform.bodies import take
 
-    return take.annotations(entries, seed)
+    return take.annotate(entries, seed)
 
 
-def write(folder: str | os.PathLike[str], seed: int, takes: Iterable[str] | None = None, small: bool = False) -> None:
+def write(
+    folder: str | os.PathLike[str], seed: int, takes: Iterable[str] | None = None, small: bool = False
+) -> None:
     """Perform and write takes: see `miburi.perform.bodies.take.write`."""
     from miburi.perform.bodies import take
 
     take.write(folder, seed, takes, small)
 
 
-__all__ = ["KEYWORDS", "OTHERS", "PERFORMERS", "Clip", "Plan", "annotations", "imagine", "perform", "plan", "write"]
+__all__ = [
+    "KEYWORDS",
+    "OTHERS",
+    "PERFORMERS",
+    "Clip",
+    "Plan",
+    "annotate",
+    "imagine",
+    "perform",
+    "plan",
+    "write",
+]

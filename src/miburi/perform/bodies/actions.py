@@ -118,7 +118,9 @@ def twists(b: Score, times: int) -> Span:
         for side in SIDES:  # the heel that the body turns away from comes up
             toes = b.heading + b.out(side) * (b.who.toe_out + 4.0)
             lifts = b.out(side) * way < 0
-            b.move(f"{side}_sole", t, t + span, (toes + 10.0 * way * lifts, b.vary(20.0, 4.0) if lifts else 0.0))
+            b.move(
+                f"{side}_sole", t, t + span, (toes + 10.0 * way * lifts, b.vary(20.0, 4.0) if lifts else 0.0)
+            )
         t += span + 0.04
         way = -way
     end = t
@@ -356,7 +358,13 @@ def swing_legs(b: Score, times: int) -> Span:
         if b.rng.random() < 0.4:
             b.look(t, t + span, b.vary(6.0, 6.0), b.vary(0.0, 14.0))
         rock = 6.0 if number % 2 else -6.0  # the trunk answers the legs
-        b.turn(t, t + span, 0.0 if together else 0.5 * rock, -8.0 + b.vary(rock if together else 0.5 * rock, 1.0), 0.0)
+        b.turn(
+            t,
+            t + span,
+            0.0 if together else 0.5 * rock,
+            -8.0 + b.vary(rock if together else 0.5 * rock, 1.0),
+            0.0,
+        )
         b.trunk(
             t,
             t + span,

@@ -194,9 +194,7 @@ Noise = Callable[[int, float], Floats]
 """(width, hz) → (T, width)"""
 
 
-def _off_floor(
-    who: Person, s: str, shoulder: Floats, hand: Floats, chest: Floats, swivel: Floats
-) -> Floats:
+def _off_floor(who: Person, s: str, shoulder: Floats, hand: Floats, chest: Floats, swivel: Floats) -> Floats:
     """By how much more an elbow is turned about its arm's line to stay above the floor (T,), degrees."""
     low = 2 * _OVER * who.height
     rows = np.flatnonzero(np.minimum(shoulder[:, 1], hand[:, 1]) < 0.75 * who.upper_arm)
@@ -228,7 +226,9 @@ def embody(b: Score, rng: np.random.Generator, name: str = "", fps: float = 2 * 
     """
     n = int(np.ceil(b.now * RATE)) + 1
     t = np.arange(n) / RATE
-    paths = [flight.path(b, f, lambda at: pose(b, at, lambda w, hz: np.zeros((len(at), w)))) for f in b.flights]
+    paths = [
+        flight.path(b, f, lambda at: pose(b, at, lambda w, hz: np.zeros((len(at), w)))) for f in b.flights
+    ]
     body = pose(b, t, lambda width, hz: unrest(rng, n, width, hz), paths)
     local = np.empty((n, len(people.JOINTS), 4))
     for j, joint in enumerate(people.JOINTS):
@@ -321,7 +321,9 @@ def pose(b: Score, t: Floats, noise: Noise, paths: Sequence[flight.Path] = ()) -
                 soles[s] = _between(sole, shank @ _turn("X", loose[s][:, 1]), loose[s][:, 0])
                 tip = ankles[s][:, 1] + _apply(soles[s], np.array(people.tip(who)))[:, 1]
                 ankle = np.minimum(tip, ankles[s][:, 1] - 0.03 * who.height) - 0.002
-                ankles[s][:, 1] += np.minimum(loose[s][:, 0] * 4.0, 1.0) * (-lower(-ankle, 0.0 * ankle, 0.004) - ankle)
+                ankles[s][:, 1] += np.minimum(loose[s][:, 0] * 4.0, 1.0) * (
+                    -lower(-ankle, 0.0 * ankle, 0.004) - ankle
+                )
                 thigh, shank = _leg(who, hip, ankles[s], across, hips, loose[s][:, 0])
             soles[s] = _between(sole, shank @ _turn("X", loose[s][:, 1]), loose[s][:, 0])
         knee = hip + _apply(thigh, np.array([0.0, -who.thigh, 0.0]))
@@ -382,10 +384,7 @@ def _upper(
         "knee": (knee, flat * scale),
     }
     hand = framed(b.tracks[f"{s}_hand"], t, frames, chest, sign)
-    hand = (
-        hand
-        + (0.006 * who.sway * noise(3, 0.6) + 0.0015 * who.tremor * noise(3, 3.0)) * scale
-    )
+    hand = hand + (0.006 * who.sway * noise(3, 0.6) + 0.0015 * who.tremor * noise(3, 3.0)) * scale
     middle = at["Spine2"] + _apply(chest, np.array([0.0, -0.01 * who.height, 0.012 * who.height]))
     hand = _clear(who, (middle, chest), hand)
     hand[:, 1] = -lower(-hand[:, 1], np.full(len(t), -_OVER * who.height), 0.004)
@@ -412,7 +411,11 @@ def _upper(
     own = world[f"{long}Hand"]
     deep = 0.02 * who.height - (hand[:, 1] + sign * own[:, 1, 0] * people.HAND * who.height * who.arms)
     u = np.clip(deep / (0.05 * who.height), 0.0, 1.0)
-    world[f"{long}Hand"] = _between(own, _level(*(_slow(own[:, [0, 2], 0]) + 0.6 * sign * np.stack([np.sin(yaw), np.cos(yaw)], axis=1)).T), u * u * (3 - 2 * u))
+    world[f"{long}Hand"] = _between(
+        own,
+        _level(*(_slow(own[:, [0, 2], 0]) + 0.6 * sign * np.stack([np.sin(yaw), np.cos(yaw)], axis=1)).T),
+        u * u * (3 - 2 * u),
+    )
 
 
 def _slow(x: Floats) -> Floats:

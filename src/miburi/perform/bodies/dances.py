@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from miburi.perform.bodies.acrobatics import hands, leg, lift, plant, still, tiptoe
 from miburi.perform.bodies.gestures import Span
+from miburi.perform.bodies.limbs import hands, leg, lift, plant, still, tiptoe
 from miburi.perform.bodies.score import SIDES, Score
 from miburi.perform.bodies.steps import home, stand
 
@@ -50,7 +50,14 @@ def spins(b: Score, times: int) -> Span:
         leg(b, side, t + 0.6 * push, t + push + 0.3, free, 40.0)
         down = b.beat(0.4)
         tiptoe(b, over - 0.02, over + 0.7 * down, 0.0, other)
-        plant(b, side, over - 0.15, over + 0.6 * down, b.world(*b.stance(side, 1.2, -0.04 * k)), b.heading + sign * b.who.toe_out)
+        plant(
+            b,
+            side,
+            over - 0.15,
+            over + 0.6 * down,
+            b.world(*b.stance(side, 1.2, -0.04 * k)),
+            b.heading + sign * b.who.toe_out,
+        )
         b.pelvis(over - 0.05, over + down, 0.0, -0.03 * k, 0.0)
         hands(b, over - 0.2, over + down + 0.1, (0.5, -0.55, 0.25))
         b.trunk(over, over + down, 3.0)
@@ -95,12 +102,24 @@ def russian(b: Score, times: int) -> Span:
         # both feet leave the floor for a moment: one shoots out, the other comes under the body
         b.pelvis(t, t + 0.42 * span, b.out(stay) * 0.03 * k, low + 0.075 * k, -0.06 * k)
         lift(b, kick, t + 0.06 * span)
-        b.move(f"{kick}_foot", t + 0.06 * span, t + 0.62 * span, b.world(b.out(kick) * 0.1 * k, 0.035 * k + 0.1 * k * float(b.rng.random()), b.vary(0.72, 0.03) * k))
+        b.move(
+            f"{kick}_foot",
+            t + 0.06 * span,
+            t + 0.62 * span,
+            b.world(
+                b.out(kick) * 0.1 * k, 0.035 * k + 0.1 * k * float(b.rng.random()), b.vary(0.72, 0.03) * k
+            ),
+        )
         b.move(f"{kick}_sole", t + 0.06 * span, t + 0.62 * span, (b.heading + b.out(kick) * 8.0, -26.0))
         if number or b.last(f"{stay}_foot").frame == "world":
             if not (b.air[stay] and b.air[stay][-1][1] > 1e8):
                 lift(b, stay, t + 0.08 * span)
-            b.move(f"{stay}_foot", max(t + 0.08 * span, b.last(f"{stay}_foot").t), t + 0.55 * span, b.world(*home_[stay]))
+            b.move(
+                f"{stay}_foot",
+                max(t + 0.08 * span, b.last(f"{stay}_foot").t),
+                t + 0.55 * span,
+                b.world(*home_[stay]),
+            )
             b.move(f"{stay}_sole", t + 0.08 * span, t + 0.5 * span, (b.heading + b.out(stay) * 14.0, 38.0))
             opened = b.air[stay].pop()[0]
             b.air[stay].append((opened, t + 0.55 * span))

@@ -95,4 +95,3 @@ def path(b: Score, flight: Flight, pose: Callable[[Floats], Body]) -> Path:
             speed = tuple(curve(at, 1)[columns].tolist())
             b.tracks[track][i] = b.tracks[track][i]._replace(speed=speed)
     return Path(start, end, curve)
-

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from miburi.perform.bodies.acrobatics import hands, leg, legs, lift, palms, plant, root, still, tiptoe, unpalm
 from miburi.perform.bodies.gestures import Span
+from miburi.perform.bodies.limbs import hands, leg, legs, lift, palms, plant, root, still, tiptoe, unpalm
 from miburi.perform.bodies.score import SIDES, Score
 from miburi.perform.bodies.steps import home, stand
 
@@ -171,7 +171,12 @@ def somersault(b: Score) -> Span:
         lift(b, s, t - 0.02)
         leg(b, s, t - 0.02, t + 0.3, tuck, 25.0)
     roll = b.beat(0.2, 0.06)
-    for pitch, high, back in ((-92.0, 0.13, -0.16), (-135.0, 0.34, -0.30), (-178.0, 0.61, -0.52), (-222.0, 0.68, -0.74)):
+    for pitch, high, back in (
+        (-92.0, 0.13, -0.16),
+        (-135.0, 0.34, -0.30),
+        (-178.0, 0.61, -0.52),
+        (-222.0, 0.68, -0.74),
+    ):
         root(b, t, t + roll, (0.0, high * k, seat + back * k), through=True)
         b.turn(t, t + roll, 0.0, pitch, 0.0, through=True, even=True)
         b.trunk(t, t + roll, 54.0)

@@ -195,9 +195,9 @@ def chin(b: Score) -> Span:
     b.move(f"{side}_wrist", t, t + rise, (30.0, 0.0, 0.0))
     if held:
         b.reach(b.other(side), t + 0.1, t + rise, (b.vary(-0.5, 0.04), b.vary(-0.55, 0.04), 0.31), arc=0.05)
-        b.move(f"{side}_swivel", t, t + rise, (b.vary(14.0, 4.0),))
+        b.move(f"{side}_swivel", t, t + rise, (b.vary(-42.0, 5.0),))
     else:
-        b.move(f"{side}_swivel", t, t + rise, (b.vary(20.0, 6.0),))
+        b.move(f"{side}_swivel", t, t + rise, (b.vary(-34.0, 8.0),))
     b.trunk(t, t + rise, 3.0, b.vary(0.0, 2.0), b.vary(0.0, 3.0))
     b.look(t, t + rise, 11.0, b.vary(0.0, 9.0), b.out(side) * -4.0)
     b.pelvis(t, t + rise, b.vary(0.0, 0.025), -0.004, 0.0)
@@ -247,12 +247,12 @@ def drink(b: Score, times: int) -> Span:
             "head",
             arc=0.05,
         )
-        b.move(f"{side}_swivel", t, t + up, (b.vary(4.0, 8.0),))
+        b.move(f"{side}_swivel", t, t + up, (b.vary(-34.0, 10.0),))
         b.move(f"{side}_wrist", t, t + up, (10.0, -12.0, -15.0))
         b.look(t + 0.4 * up, t + up + 0.15, -14.0)
         b.trunk(t + 0.3 * up, t + up + 0.1, -4.0)
         t += up
-        b.look(t + 0.15, t + sip, b.vary(-22.0, 4.0))
+        b.look(t + 0.15, t + sip, b.vary(-16.0, 4.0))
         b.reach(side, t, t + sip, (0.065, 0.035, 0.185), "head", arc=0.0)
         t += sip
         b.look(t, t + 0.7 * down, 3.0)

@@ -4,8 +4,20 @@ from __future__ import annotations
 
 import math
 
-from miburi.perform.bodies.acrobatics import crouch, land, leg, legs, lift, on_foot, plant, root, still, tiptoe, under
 from miburi.perform.bodies.gestures import Span
+from miburi.perform.bodies.limbs import (
+    crouch,
+    land,
+    leg,
+    legs,
+    lift,
+    on_foot,
+    plant,
+    root,
+    still,
+    tiptoe,
+    under,
+)
 from miburi.perform.bodies.score import SIDES, Score
 from miburi.perform.bodies.steps import home, stand, swing, turn_round
 
@@ -36,7 +48,15 @@ def run(b: Score, count: int) -> Span:
               leave=55.0 if not last else 25.0, arrive=0.0 if last else -6.0)  # fmt: skip
         rise = -0.045 * k if not last else -0.02 * k
         b.pelvis(t, t + 0.5 * beat, 0.0, 0.03 * k, at - 0.55 * ahead, through=True, even=True)
-        b.pelvis(t + 0.5 * beat, t + beat, 0.0, rise, at - (0.12 * k if not last else 0.0), through=not last, even=True)
+        b.pelvis(
+            t + 0.5 * beat,
+            t + beat,
+            0.0,
+            rise,
+            at - (0.12 * k if not last else 0.0),
+            through=not last,
+            even=True,
+        )
         b.turn(t, t + beat, -b.out(side) * 8.0 * (not last), 6.0 * (not last), 0.0)
         b.trunk(t, t + beat, 8.0 * (not last), 0.0, b.out(side) * 10.0 * (not last))
         for s, value in ((side, (0.1, -0.62, -0.3)), (other, (-0.05, -0.3, 0.5))):
@@ -139,7 +159,9 @@ def wave_both(b: Score, times: int) -> Span:
             span = b.beat(0.36)
             for s in SIDES:
                 lean = b.out(s) * sign if along else sign
-                b.reach(s, t, t + span, (0.15 + 0.26 * lean * b.who.size, 0.84 - 0.08 * abs(lean), 0.22), arc=0.0)
+                b.reach(
+                    s, t, t + span, (0.15 + 0.26 * lean * b.who.size, 0.84 - 0.08 * abs(lean), 0.22), arc=0.0
+                )
             b.trunk(t, t + span, -1.0, -4.0 * sign if along else 0.0)
             t += span
     down = b.beat(0.8)
@@ -162,7 +184,9 @@ def arm_circles(b: Score, times: int) -> Span:
     count = 8 * times
     for number in range(count + 1):
         for s in SIDES:
-            a = math.radians(180.0 - way * 45.0 * number + (180.0 if turn_ and s == b.hand and number else 0.0))
+            a = math.radians(
+                180.0 - way * 45.0 * number + (180.0 if turn_ and s == b.hand and number else 0.0)
+            )
             high, far = math.cos(a), math.sin(a)
             wide = 0.12 + 0.16 * (far < 0) + 0.04 * (high > 0.5)
             value = (wide, 0.93 * high, 0.93 * far if far > 0 else 0.55 * far)

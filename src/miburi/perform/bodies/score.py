@@ -286,9 +286,7 @@ class Score:
         span = end - start
         whole, gravity = self.last("pelvis"), (0.0, -GRAVITY, 0.0)
         even = [(b - a) / span for a, b in zip(whole.value, place, strict=True)]
-        up, down = (
-            (even[0], even[1] + sign * 0.5 * GRAVITY * span, even[2]) for sign in (1.0, -1.0)
-        )
+        up, down = ((even[0], even[1] + sign * 0.5 * GRAVITY * span, even[2]) for sign in (1.0, -1.0))
         self.tracks["pelvis"][-1] = whole._replace(speed=up, bend=gravity)
         self.tracks["pelvis"].append(Key(end, place, speed=down, bend=gravity))
         was = self.last("turn")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from miburi.perform.bodies.acrobatics import hands, leg, lift, plant, root, still, sweep, tiptoe
 from miburi.perform.bodies.gestures import Span
+from miburi.perform.bodies.limbs import hands, leg, lift, plant, root, still, sweep, tiptoe
 from miburi.perform.bodies.score import SIDES, Score, Vector
 from miburi.perform.bodies.steps import home, stand
 
@@ -121,14 +121,23 @@ def _kick(b: Score, side: str, start: float, end: float, high: float, back: bool
 def crawl(b: Score, times: int, back: bool) -> Span:
     """Arms go round in turn; the body rolls; legs beat."""
     lying = _lying(b)
-    start = b.now
     _onto(b, back, lying)
     t = b.now
+    start = t - 0.4
     side = b.hand
     cycle = b.beat(1.35 if back else 1.25, 0.05)
     # degrees of the hand's way and how bent the arm is, at eighths of a cycle, from the catch on
     front = ((8, 0.0), (48, 0.1), (88, 0.3), (130, 0.24), (172, 0.04), (225, 0.38), (282, 0.42), (338, 0.16))
-    rear = ((-6, 0.02), (-52, 0.16), (-98, 0.3), (-142, 0.22), (-178, 0.03), (-232, 0.0), (-280, 0.0), (-325, 0.0))
+    rear = (
+        (-6, 0.02),
+        (-52, 0.16),
+        (-98, 0.3),
+        (-142, 0.22),
+        (-178, 0.03),
+        (-232, 0.0),
+        (-280, 0.0),
+        (-325, 0.0),
+    )
     way = rear if back else front
     count = 8 * times
     step = cycle / 8
@@ -143,23 +152,33 @@ def crawl(b: Score, times: int, back: bool) -> Span:
             shift = 1 if s == side else 5
             value = _stroke(way[(number + shift) % 8], back)
             value = tuple(v + float(b.rng.normal(0.0, 0.012)) for v in value)
-            b.move(f"{s}_hand", s_t, s_t + step, value, "arm", through=number + 1 < count, exact=True, even=True)
+            b.move(
+                f"{s}_hand", s_t, s_t + step, value, "arm", through=number + 1 < count, exact=True, even=True
+            )
         if number % 4 == 3:
             sign = b.out(side) * (1.0 if (number // 4) % 2 == 0 else -1.0) * (-1.0 if back else 1.0)
             roll = 26.0 if lying else 14.0
             b.move("spin", s_t - 3 * step, s_t + step, (0.5 * roll * sign,))
-            b.trunk(s_t - 3 * step, s_t + step, -4.0 if lying else (22.0 if not back else -10.0), 0.0, 0.8 * roll * sign)
+            b.trunk(
+                s_t - 3 * step,
+                s_t + step,
+                -4.0 if lying else (22.0 if not back else -10.0),
+                0.0,
+                0.8 * roll * sign,
+            )
             breath = not back and b.rng.random() < 0.5
             b.look(s_t - 3 * step, s_t + step, -26.0 if not back else 10.0, sign * (46.0 if breath else 4.0))
         if lying:
             for s in SIDES:
                 up = (number + (s == side)) % 2 == 0
-                _kick(b, s, s_t, s_t + step, (0.11 if up else -0.08) * b.vary(0.75 if back else 1.0, 0.1), back)
+                _kick(
+                    b, s, s_t, s_t + step, (0.11 if up else -0.08) * b.vary(0.75 if back else 1.0, 0.1), back
+                )
         elif number % 4 == 3:
             _dip(b, s_t - 3 * step, s_t + step, number // 4, back)
     b.now = end
     _off(b, back, lying)
-    return start, b.now
+    return start, end + 0.2
 
 
 def _stroke(point: tuple[float, float], back: bool) -> Vector:
@@ -181,17 +200,35 @@ def _dip(b: Score, start: float, end: float, number: int, back: bool) -> None:
 def breast(b: Score, times: int) -> Span:
     """Hands shoot out, sweep apart and in under the chest; the legs draw up and kick round."""
     lying = _lying(b)
-    start = b.now
     _onto(b, False, lying)
     t = b.now
+    start = t - 0.4
     for _ in range(times):
         cycle = b.beat(1.6, 0.05)
         out, pull, shoot = 0.32 * cycle, 0.26 * cycle, 0.42 * cycle
         hands(b, t, t + out, (b.vary(0.42, 0.04), 0.66, 0.34))
         t1 = t + out
         for s in SIDES:
-            b.move(f"{s}_hand", t1, t1 + 0.55 * pull, (0.3, 0.2, 0.58), "arm", through=True, exact=True, even=True)
-            b.move(f"{s}_hand", t1 + 0.55 * pull, t1 + pull, (-0.16, -0.02, 0.5), "arm", through=True, exact=True, even=True)
+            b.move(
+                f"{s}_hand",
+                t1,
+                t1 + 0.55 * pull,
+                (0.3, 0.2, 0.58),
+                "arm",
+                through=True,
+                exact=True,
+                even=True,
+            )
+            b.move(
+                f"{s}_hand",
+                t1 + 0.55 * pull,
+                t1 + pull,
+                (-0.16, -0.02, 0.5),
+                "arm",
+                through=True,
+                exact=True,
+                even=True,
+            )
             b.move(f"{s}_hand", t1 + pull, t1 + pull + 0.75 * shoot, (-0.1, 0.9, 0.28), "arm", exact=True)
         rise = -24.0 if lying else 2.0
         b.trunk(t, t1 + pull, rise)
@@ -211,15 +248,15 @@ def breast(b: Score, times: int) -> Span:
         t += cycle + 0.02
     b.now = t
     _off(b, False, lying)
-    return start, b.now
+    return start, t + 0.2
 
 
 def fly(b: Score, times: int) -> Span:
     """Both arms round together, a wave runs through the trunk, the legs beat twice a stroke."""
     lying = _lying(b)
-    start = b.now
     _onto(b, False, lying)
     t = b.now
+    start = t - 0.4
     cycle = b.beat(1.35, 0.05)
     way = ((8, 0.0), (45, 0.08), (85, 0.28), (130, 0.26), (172, 0.06), (228, 0.06), (285, 0.08), (335, 0.06))
     wide = (0.1, 0.25, 0.0, -0.05, 0.12, 0.5, 0.62, 0.3)
@@ -234,7 +271,9 @@ def fly(b: Score, times: int) -> Span:
             if p in (5, 6):  # over the water, low and wide
                 value = (0.72, value[1], -0.12)
             value = tuple(v + float(b.rng.normal(0.0, 0.012)) for v in value)
-            b.move(f"{s}_hand", s_t, s_t + step, value, "arm", through=number + 1 < count, exact=True, even=True)
+            b.move(
+                f"{s}_hand", s_t, s_t + step, value, "arm", through=number + 1 < count, exact=True, even=True
+            )
         if number % 4 == 3:
             up = (number // 4) % 2 == 0
             low = -14.0 if lying else 10.0
@@ -251,6 +290,7 @@ def fly(b: Score, times: int) -> Span:
                 k = b.who.height / 1.75
                 b.pelvis(s_t - 3 * step, s_t - step, 0.0, -0.16 * k, -0.14 * k)
                 b.pelvis(s_t - step, s_t + step, 0.0, -0.08 * k, -0.16 * k)
-    b.now = t + count * step
+    t += count * step
+    b.now = t
     _off(b, False, lying)
-    return start, b.now
+    return start, t + 0.2

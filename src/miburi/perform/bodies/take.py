@@ -66,7 +66,9 @@ def _lie(b: Score, times: int) -> Done:
 
 def _chair(b: Score, times: int) -> Done:
     actions.keep_feet(b)
-    done = [("sit down", *actions.sit(b, float(b.rng.uniform(0.25, 0.28)), hands=b.way("chair", "knee", "edge")))]
+    done = [
+        ("sit down", *actions.sit(b, float(b.rng.uniform(0.25, 0.28)), hands=b.way("chair", "knee", "edge")))
+    ]
     actions.idle(b, b.beat(1.5, 0.5))
     return [*done, ("stand up", *actions.stand_up(b))]
 
@@ -172,14 +174,14 @@ def perform(entry: Plan, seed: int) -> tuple[Motion, list[Annotation]]:
     motion
         Metres, at the take's true rate, without its rest pose.
     annotations
-        As `annotations` gives them.
+        As `annotate` gives them.
     """
     b, done = compose(entry, seed)
     motion = embody(b, store.seed(seed, "everyday", entry.take, "unrest"), entry.take, entry.fps)
     return motion, _rows(entry, b, done)
 
 
-def annotations(entries: Iterable[Plan], seed: int) -> list[Annotation]:
+def annotate(entries: Iterable[Plan], seed: int) -> list[Annotation]:
     """What is done when, of some takes.
 
     Returns
@@ -226,7 +228,9 @@ def imagine(keyword: str, performer_seed: int | str) -> Motion:
     return motion[int(np.floor(start * motion.fps)) : int(np.ceil(end * motion.fps)) + 1]
 
 
-def write(folder: str | os.PathLike[str], seed: int, takes: Iterable[str] | None = None, small: bool = False) -> None:
+def write(
+    folder: str | os.PathLike[str], seed: int, takes: Iterable[str] | None = None, small: bool = False
+) -> None:
     """Perform and write `{take}.bvh`.
 
     As in the CMU database, the header of every file says 120 frames/s, also where every second frame only was
@@ -253,7 +257,9 @@ def write(folder: str | os.PathLike[str], seed: int, takes: Iterable[str] | None
         if entries[name].rest:
             root = np.concatenate([root[:1], root])
             rotations = np.concatenate([np.tile([0.0, 0.0, 0.0, 1.0], (1, rotations.shape[1], 1)), rotations])
-        formats.write(Path(folder) / f"{name}.bvh", Motion(motion.skeleton, 120.0, root, rotations, name=name))
+        formats.write(
+            Path(folder) / f"{name}.bvh", Motion(motion.skeleton, 120.0, root, rotations, name=name)
+        )
 
 
-__all__ = ["KEYWORDS", "MOTIONS", "annotations", "compose", "imagine", "perform", "write"]
+__all__ = ["KEYWORDS", "MOTIONS", "annotate", "compose", "imagine", "perform", "write"]
