@@ -2,8 +2,9 @@
 
     python benchmarks/bench_retrieval.py [--recordings FOLDER]
 
-Queries and segments are windows of real clips where the recordings are there, and simulated smooth features
-in any case: bounds that prune the one may not prune the other. All times are medians of one thread, in one
+Segments are pieces of real bodies where the recordings are there (whole clips, PPCA pieces of uncut takes, and
+windows where these are too few), and simulated smooth features in any case: bounds that prune the one may not
+prune the other. All times are medians of one thread, in one
 run, peers in turn. The paper's seconds come from another machine (Core2 Duo 2.66 GHz, Matlab and C++) and
 are printed for orientation only.
 """
@@ -17,13 +18,16 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import argparse
 import time
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from miburi.formats import read
+from miburi.motion import Motion
 from miburi.retrieval import Index, features, measures, reset_yaw, segment
 from miburi.retrieval.jvh import jvh
+from miburi.retrieval.latent import Settings
 
 PAPER = {  # seconds per query in [P]: table 4 (269 segments, Matlab) and table 5 (3065 segments, C++)
     (269, "DSPM(PCA)"): 2.9,
@@ -34,6 +38,8 @@ PAPER = {  # seconds per query in [P]: table 4 (269 segments, Matlab) and table 
     (3065, "MSM"): 0.0023,
 }
 Takes = list[np.ndarray]
+Pieces = list[tuple[str, int, int, int]]  # take, its place, start, end
+SIZES = (269, 1000, 3065)
 
 
 def simulated(count: int, seed: int = 0) -> Takes:
@@ -47,24 +53,43 @@ def simulated(count: int, seed: int = 0) -> Takes:
     return takes
 
 
-def recorded(folder: Path) -> Takes:
-    """Features of the clips of `body_hdm05` and `body_bandai`."""
-    takes = []
+def recorded(folder: Path) -> tuple[Takes, Pieces]:
+    """Features of all real bodies, and their pieces: whole cut clips, and what PPCA makes of uncut takes."""
+    takes, pieces = [], []
+
+    def add(motion: Motion, cut: bool) -> None:
+        i, x = len(takes), reset_yaw(features(motion))
+        ends = [0, *segment(motion).tolist(), len(x)] if cut else [0, len(x)]
+        takes.append(x)
+        pieces.extend((str(i), i, a, b) for a, b in pairwise(ends) if b > a)
+
     for path in sorted((folder / "body_hdm05").glob("*/*.amc.gz")):
-        motion = read(path, skeleton=folder / "body_hdm05/asf" / f"{path.name[:2]}.asf")
-        takes.append(reset_yaw(features(motion)))
-    takes += [reset_yaw(features(read(path))) for path in sorted((folder / "body_bandai").glob("*/*.bvh.gz"))]
-    return takes
+        add(read(path, skeleton=folder / "body_hdm05/asf" / f"{path.name[:2]}.asf.gz"), False)
+    for path in sorted((folder / "body_bandai").glob("*/*.bvh.gz")):
+        add(read(path), False)
+    for path in sorted((folder / "body/cmu").glob("*.amc.gz")):
+        # two subjects' own skeletons are not there
+        subject = {"13": "02", "15": "02"}.get(path.name[:2], path.name[:2])
+        add(read(path, skeleton=folder / "body/cmu" / f"{subject}.asf", fps=120), True)
+    return takes, pieces
 
 
-def windows(takes: Takes, count: int) -> list[tuple[str, int, int, int]]:
-    """`count` windows of 50 to 100 frames, spread evenly over the takes."""
+def windows(takes: Takes, count: int, shortest: int = 50, longest: int = 100) -> Pieces:
+    """`count` windows, spread evenly over the takes."""
+    span = longest - shortest + 1
     every = [
-        (str(i), i, a, min(len(x), a + 50 + (13 * a) % 51))
+        (str(i), i, a, min(len(x), a + shortest + (13 * a) % span))
         for i, x in enumerate(takes)
-        for a in range(0, len(x) - 49, 20)
+        for a in range(0, len(x) - shortest + 1, 20)
     ]
     return [every[i] for i in np.linspace(0, len(every) - 1, count).astype(int)]
+
+
+def pieces_of(takes: Takes, pieces: Pieces, count: int) -> Pieces:
+    """`count` of the pieces, spread evenly; where there are fewer, windows are added."""
+    if len(pieces) >= count:
+        return [pieces[i] for i in np.linspace(0, len(pieces) - 1, count).astype(int)]
+    return pieces + windows(takes, count - len(pieces))
 
 
 def plain(index: Index, query: np.ndarray, measure: str) -> np.ndarray:
@@ -114,21 +139,67 @@ def median(work: Callable[[np.ndarray], object], queries: Sequence[np.ndarray]) 
     return float(np.median(seconds))
 
 
-def bench_queries(name: str, takes: Takes, queries: Sequence[np.ndarray], sizes: Sequence[int]) -> None:
-    print(f"\n{name}: milliseconds per query, first ten of the segments, {len(queries)} queries")
-    print(f"{'segments':>8}  {'measure':15}{'plain':>9}{'all':>9}{'ten':>9}{'ratio':>8}{'paper':>9}")
-    for size in sizes:
-        index = Index.build(takes, windows(takes, size))
+def bench_queries(name: str, takes: Takes, pieces: Pieces, queries: Sequence[np.ndarray]) -> None:
+    print(f"\n{name}: milliseconds per query, 50 frames of each segment, {len(queries)} queries")
+    print(f"{'segments':>8}  {'measure':15}{'plain':>9}{'all':>9}{'first 10':>9}{'ratio':>8}{'paper':>9}")
+    kept: dict[str, list[float]] = {}
+    for size in SIZES:
+        index = Index.build(takes, pieces_of(takes, pieces, size))
         for measure in measures():
+            if "GP-LVM" in measure:
+                continue
             loop = median(
                 lambda q, m=measure, i=index: plain(i, q, m), queries[: 2 if measure == "DTW" else 4]
             )
             full = median(lambda q, m=measure, i=index: i.rank(q, m), queries)
             ten = median(lambda q, m=measure, i=index: i.rank(q, m, 10), queries)
+            kept.setdefault(measure, []).append(ten)
             paper = PAPER.get((size, measure))
             printed = "" if paper is None else f"{paper * 1e3:9.4g}"
             times = "".join(f"{t * 1e3:9.3f}" for t in (loop, full, ten))
             print(f"{size:8}  {measure:15}{times}{loop / ten:8.1f}{printed:>9}")
+    print(
+        f"growth of the first 10 from {SIZES[0]} to {SIZES[-1]} segments ({SIZES[-1] / SIZES[0]:.1f} times):"
+    )
+    print("  " + ", ".join(f"{measure} {times[-1] / times[0]:.1f}" for measure, times in kept.items()))
+
+
+def bench_dtw(name: str, takes: Takes, queries: Sequence[np.ndarray]) -> None:
+    """Whole sequences: queries of 300 frames, 269 segments of about 200, beside dtaidistance's fastest call."""
+    from dtaidistance import dtw_ndim
+
+    index = Index.build(takes, windows(takes, 269, 150, 250), samples=None)
+    lasts = [x[np.linspace(0, len(x) - 1, 300).astype(int)].astype(np.float64) for x in queries[:6]]
+    parts = [index.frames[a:b].astype(np.float64) for a, b in pairwise(index.offsets)]
+    peer, full, ten = (
+        median(work, lasts)
+        for work in (
+            lambda q: [dtw_ndim.distance_fast(q, x) for x in parts],
+            lambda q: index.rank(q, "DTW"),
+            lambda q: index.rank(q, "DTW", 10),
+        )
+    )
+    for q in lasts:
+        theirs = np.array([dtw_ndim.distance_fast(q, x) for x in parts])
+        assert np.abs(index.distances(q, "DTW") - theirs).max() < 1e-6
+        assert (index.rank(q, "DTW", 10).order == np.argsort(theirs, kind="stable")[:10]).all()
+    print(f"\n{name}: DTW, 300 frames against 269 segments of {len(index.frames) / 269:.0f}, ms per query")
+    print(
+        f"dtaidistance {peer * 1e3:.0f}, all {full * 1e3:.0f} ({peer / full:.1f} times faster), "
+        f"first 10 {ten * 1e3:.1f} ({peer / ten:.1f} times faster)"
+    )
+
+
+def bench_gplvm(name: str, takes: Takes, pieces: Pieces, queries: Sequence[np.ndarray]) -> None:
+    index = Index.build(takes, pieces_of(takes, pieces, 269))
+    start = time.perf_counter()
+    index = index.trained(Settings())
+    took = time.perf_counter() - start
+    each = ", ".join(
+        f"{m} {median(lambda q, m=m: index.rank(q, m), queries[:4]):.2f}" for m in measures() if "GP-LVM" in m
+    )
+    print(f"\n{name}: GP-LVM of 269 segments: training {took:.1f} s; seconds per query: {each}")
+    print("[P]: SM(GP-LVM) 189.7, DSPM(GP-LVM) 157.7")
 
 
 def bench_segmentation(folder: Path) -> None:
@@ -155,12 +226,15 @@ def main() -> None:
     default = Path(__file__).parents[1] / "../shared/data"
     parser.add_argument("--recordings", type=Path, default=Path(os.environ.get("MIBURI_RECORDINGS", default)))
     folder = parser.parse_args().recordings
-    sizes = (269, 3065)
-    bench_queries("simulated features", simulated(300), simulated(20, seed=1), sizes)
+    made, played = simulated(300), simulated(20, seed=1)
+    bench_queries("simulated features", made, windows(made, SIZES[-1]), played)
+    bench_dtw("simulated features", made, played)
+    bench_gplvm("simulated features", made, windows(made, SIZES[-1]), played)
     if not (folder / "body_hdm05").is_dir():
         print(f"\nno real recordings in {folder} (set MIBURI_RECORDINGS): the rest was not measured")
         return
-    takes = recorded(folder)
+    takes, pieces = recorded(folder)
+    print(f"\nreal bodies: {len(pieces)} clips and PPCA pieces; windows make up what is missing")
     # queries are every 45th clip, a little slower and larger, never the very frames that are indexed
     queries = [
         (x.mean(axis=0) + 1.2 * (x - x.mean(axis=0)))[
@@ -168,7 +242,9 @@ def main() -> None:
         ]
         for x in takes[::45]
     ]
-    bench_queries("windows of real clips", takes, queries, sizes)
+    bench_queries("real pieces", takes, pieces, queries)
+    bench_dtw("windows of real takes", takes, queries)
+    bench_gplvm("real pieces", takes, pieces, queries)
     bench_segmentation(folder)
 
 

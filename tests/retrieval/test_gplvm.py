@@ -97,8 +97,8 @@ class TestAgainstGPy:
         )
         for case in g["projected"]:
             latent, error = gplvm.project(known, [case["frame"]], starts=3, iterations=50)
-            np.testing.assert_allclose(latent[0], case["latent"], atol=0.01)
-            assert error[0] == pytest.approx(case["error"], abs=1e-3)
+            np.testing.assert_allclose(latent[0], case["latent"], atol=0.02)
+            assert error[0] == pytest.approx(case["error"], rel=0.02)
 
 
 def test_training_raises_the_likelihood_and_is_deterministic():

@@ -33,6 +33,8 @@ _LONGEST = 1.0
 _ENOUGH = 1e-2
 # Rounding may take a predictive variance below the noise; it counts as at least this share of it.
 _LEAST = 0.5
+# Starts are so far from each other, in length scales.
+_APART = 0.5
 # Points beside the latent points from which projecting may set out; the box reaches a length scale beyond them.
 _SPREAD = 64
 
@@ -54,7 +56,8 @@ class Model(NamedTuple):
     weights: Floats
     """(N, D): A = K⁻¹ Y, Y the frames without their mean"""
     starts: Floats
-    """(M, q): where projecting may set out from: the latent points, and others spread over their box"""
+    """(M, q): where projecting may set out from: latent points and middles of neighbours, 2 N − 1 in all, where
+    the model is sure of itself, and others spread over their box"""
     reached: Floats
     """(M, D): what is predicted there, without the mean"""
     variance: Floats
@@ -162,7 +165,8 @@ def model(x: ArrayLike, latent: Floats, scale: Floats) -> Model:
     inverse = _inverse(factor)
     weights = inverse @ (frames - mean)
     low, high = latent.min(axis=0) - 1.0, latent.max(axis=0) + 1.0
-    starts = np.concatenate([latent, low + _spread(latent.shape[1]) * (high - low)])
+    between = 0.5 * (latent[1:] + latent[:-1])
+    starts = np.concatenate([latent, between, low + _spread(latent.shape[1]) * (high - low)])
     k = _covariance(starts, latent, signal)
     return Model(
         mean,
@@ -200,8 +204,8 @@ def project(known: Model, x: ArrayLike, starts: int = 2, iterations: int = 20) -
     x : (n, D)
         Frames.
     starts
-        How many of the model's `starts` each frame sets out from: the likeliest, and the likeliest that are
-        more than a length scale away from those before.
+        How many of the model's `starts` each frame sets out from: the likeliest near the latent points, the
+        likeliest of those that are spread, and then the likeliest of all, each at some distance from those before.
     iterations
         Of BFGS at most, from each start.
 
@@ -281,18 +285,20 @@ def _descend(first, points, latent, scale, inverse, along, square, width, starts
     left = np.empty(len(points), dtype=np.bool_)
     for f in range(count):
         left[:] = True
-        for _ in range(starts):
+        for start in range(starts):
             at = -1
-            for i in range(len(points)):
+            low = 2 * n - 1 if start == 1 else 0
+            high = 2 * n - 1 if start == 0 else len(points)
+            for i in range(low, high):
                 if left[i] and (at < 0 or first[f, i] < first[f, at]):
                     at = i
             if at < 0:
-                break
+                continue
             for i in range(len(points)):
                 gap = 0.0
                 for d in range(q):
                     gap += (points[i, d] - points[at, d]) ** 2
-                if gap <= 1.0:
+                if gap <= _APART**2:
                     left[i] = False
             x[:] = points[at]
             value = _value(x, latent, scale, inverse, along[f], square[f], width, k, both, gradient)

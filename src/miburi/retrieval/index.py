@@ -322,8 +322,10 @@ class Index:
         drawn = self._drawn(query)
         errors = self._models.errors(drawn)
         if measure == "SM(GP-LVM)":
-            return errors.mean(axis=1) if mean_not_max else errors.max(axis=1)
-        return np.maximum(errors.max(axis=1), self._models.errors_back(drawn))
+            there: Floats = errors.mean(axis=1) if mean_not_max else errors.max(axis=1)
+            return there
+        both: Floats = np.maximum(errors.max(axis=1), self._models.errors_back(drawn))
+        return both
 
     def save(self, path: str | os.PathLike[str], sources: Mapping[str, str] | None = None) -> None:
         """Write the index ("miburi/index"), with the digests of what it was made from.

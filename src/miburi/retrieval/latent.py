@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,7 +109,7 @@ class Models:
 
 def _places(offsets: NDArray[np.int64], wanted: int) -> list[NDArray[np.int64]]:
     """Rows that each segment's model is trained on."""
-    return [a + _spaced(int(b - a), wanted) for a, b in zip(offsets[:-1], offsets[1:], strict=True)]
+    return [a + _spaced(int(b - a), wanted) for a, b in pairwise(offsets)]
 
 
 def train(frames: NDArray[np.float32], offsets: NDArray[np.int64], settings: Settings) -> Models:
