@@ -34,7 +34,11 @@ def groups(name: str, corpus: settings.Corpus) -> list[settings.Group]:
     if corpus.perform == "janken":
         return [settings.Group(folder=folder, files=["*.csv"], calibration=f"{folder}/wearer.yaml")]
     if corpus.perform == "everyday":
-        return [settings.Group(folder=folder, files=["*.bvh"], annotations=f"{folder}/annotations.tsv", bounds=["*"])]
+        return [
+            settings.Group(
+                folder=folder, files=["*.bvh"], annotations=f"{folder}/annotations.tsv", bounds=["*"]
+            )
+        ]
     rates = {row["take"]: float(row["fps"]) for row in _cmu(corpus.fetch)}
     return [
         settings.Group(
