@@ -140,15 +140,15 @@ class Corpus(Model):
 class Segmentation(Model):
     """PPCA segmentation (Barbič et al. 2004)."""
 
-    variance: float = Field(
-        0.9, gt=0, lt=1, description="Share of the variance that the subspace keeps (τ)."
-    )
+    variance: float = Field(0.9, gt=0, lt=1, description="Share of the variance that the subspace keeps (τ).")
     window_s: float = Field(1.5, gt=0, description="Length of the first window, seconds.")
     ahead_s: float = Field(1.25, gt=0, description="Length of the look-ahead, seconds.")
     step_s: float = Field(1 / 6, gt=0, description="Step of the window, seconds.")
     rise: float = Field(4.0, gt=1, description="A peak that is so many times its valley makes a cut (R).")
     near_s: float = Field(
-        2 / 3, ge=0, description="Cuts found forwards and backwards that are nearer than this are one, seconds."
+        2 / 3,
+        ge=0,
+        description="Cuts found forwards and backwards that are nearer than this are one, seconds.",
     )
     differ: float = Field(
         4.5,

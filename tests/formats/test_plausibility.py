@@ -49,7 +49,11 @@ def test_a_rest_pose_before_the_motion_is_recognised(fps, frames):
 @given(st.integers(0, 1000), st.integers(0, 30), st.sampled_from([24.0, 60.0, 120.0]))
 def test_no_take_is_too_short_or_too_still(seed, frames, fps):
     rng = np.random.default_rng(seed)
-    q = Rotation.random(max(1, frames * 14), random_state=seed).as_quat()[: frames * 14].reshape(frames, 14, 4)
+    q = (
+        Rotation.random(max(1, frames * 14), random_state=seed)
+        .as_quat()[: frames * 14]
+        .reshape(frames, 14, 4)
+    )
     shaken = Motion(PERSON, fps, rng.normal(size=(frames, 3)), q)
     assert 0 <= rest_frames(shaken) <= frames
     still = np.zeros((frames, 14, 4))

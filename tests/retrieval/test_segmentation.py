@@ -90,7 +90,7 @@ def naive_cut(curve, rise, hold):
 def test_a_cut_is_a_peak_high_above_the_valley_before_it(seed, rise, hold):
     rng = np.random.default_rng(seed)
     x = np.cumsum(rng.normal(size=(260, 3)), axis=0) * rng.uniform(0.01, 1.0, 3)
-    frames, h, cut = _curve(x, 0, 30, 20, 4, 0.9, rise, hold)
+    _, h, cut = _curve(x, 0, 30, 20, 4, 0.9, rise, hold)
     whole = list(zip(*ppca_curve(x, window=30, ahead=20, step=4), strict=True))
     assert cut == naive_cut(whole, rise, hold)
     np.testing.assert_array_equal(h, [v for _, v in whole[: len(h)]])

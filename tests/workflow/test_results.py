@@ -80,6 +80,22 @@ def test_a_search_of_ones_own_log(copy: Project) -> None:
     assert {r["queries"] for r in table} == {"simulated"}
 
 
+def test_segmentation_is_scored_beside_chance(finished: Project) -> None:
+    folder = finished.path / "results" / "everyday"
+    table = rows(folder / "segmentation.csv")
+    takes = rows(folder / "takes.csv")
+    assert [r["take"] for r in table] == [*sorted(t["take"] for t in takes), "all"]
+    last = table[-1]
+    assert last["people"] == "simulated" and int(last["bounds"]) > 0
+    assert float(last["recall"]) == pytest.approx(int(last["found"]) / int(last["bounds"]), abs=1e-3)
+    for column in ("uniform_recall", "random_recall", "random_precision"):
+        assert 0 <= float(last[column]) <= 1
+    # simulated people fall as people do
+    assert {t["suspected_fps"] for t in takes} == {""}
+    lengths = rows(folder / "segment_lengths.csv")
+    assert sum(int(r["segments"]) for r in lengths) == int(last["cuts"]) + len(takes)
+
+
 def test_a_worse_metric_fails_the_check(copy: Project) -> None:
     path = copy.path / "config" / "baseline" / "test.json"
     baseline = json.loads(path.read_text())

@@ -100,7 +100,9 @@ def matches(cuts: ArrayLike, earliest: ArrayLike, latest: ArrayLike) -> int:
 
     Each cut and each bound is in one pair at most. Ranges must not lie inside one another.
     """
-    times, low, high = (np.sort(np.asarray(v, dtype=np.float64).reshape(-1)) for v in (cuts, earliest, latest))
+    times, low, high = (
+        np.sort(np.asarray(v, dtype=np.float64).reshape(-1)) for v in (cuts, earliest, latest)
+    )
     i = k = pairs = 0
     # the first cut and the first bound: who can only pair with what has gone by goes
     while i < len(times) and k < len(low):
@@ -174,7 +176,9 @@ def agreement(cuts_s: ArrayLike, human: Bounds, seconds: float, seed: int = 0) -
 
 def score(take: str, method: str, counts: Sequence[Agreement], people: str) -> SegmentationScore:
     """Precision and recall of counts that are added up."""
-    seconds, cuts, bounds_, found, accepted, uniform, random = (sum(column) for column in zip(*counts, strict=True))
+    seconds, cuts, bounds_, found, accepted, uniform, random = (
+        sum(column) for column in zip(*counts, strict=True)
+    )
 
     def share(pairs: float, of: float) -> float:
         return round(pairs / of, 4) if of else float("nan")
@@ -186,7 +190,9 @@ def score(take: str, method: str, counts: Sequence[Agreement], people: str) -> S
     )  # fmt: skip
 
 
-def length_histogram(seconds: ArrayLike, width: float = 0.5, most: float = 15.0) -> list[tuple[float, float, int]]:
+def length_histogram(
+    seconds: ArrayLike, width: float = 0.5, most: float = 15.0
+) -> list[tuple[float, float, int]]:
     """How many segments are how long: rows (from, to, segments), seconds; the last bin is open."""
     lengths = np.asarray(seconds, dtype=np.float64).reshape(-1)
     edges = np.arange(0.0, most + width / 2, width)
@@ -211,7 +217,9 @@ def write_scores(
     """
     rows = [score(take, method, [one], people) for (take, method), one in sorted(counts.items())]
     for method in sorted({method for _, method in counts}):
-        rows.append(score("all", method, [one for (_, m), one in sorted(counts.items()) if m == method], people))
+        rows.append(
+            score("all", method, [one for (_, m), one in sorted(counts.items()) if m == method], people)
+        )
     write_table(path, names(SegmentationScore), map(astuple, rows))
 
 

@@ -125,7 +125,8 @@ def flights(motion: Motion, joints: Mapping[str, str] | None = None) -> NDArray[
     if len(motion):
         air = lowest > np.percentile(lowest, 5) + _CLEAR
         edges = np.flatnonzero(np.diff(np.concatenate([[False], air, [False]]).astype(np.int8)))
-        for start, end in edges.reshape(-1, 2) + [1, -1]:
+        for before, after in edges.reshape(-1, 2):
+            start, end = before + 1, after - 1
             n = end - start
             if n < _FEWEST or start < 2 or end > len(motion) - 2:
                 continue

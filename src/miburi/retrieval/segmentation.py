@@ -109,9 +109,7 @@ def _model(added: Floats, squares: Floats, n: int, noise: float, variance: float
 
 
 @numba.njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
-def _distance(
-    values: Floats, vectors: Floats, mean: Floats, added: Floats, squares: Floats, n: int
-) -> float:
+def _distance(values: Floats, vectors: Floats, mean: Floats, added: Floats, squares: Floats, n: int) -> float:
     """Mean squared Mahalanobis distance of n frames, given as sums, from a model."""
     shift = np.outer(added / n, mean)
     along = (squares / n - shift - shift.T + np.outer(mean, mean)) @ vectors
@@ -207,7 +205,8 @@ def _surprise(x: Floats, variance: float) -> float:
     n = len(x)
     added, squares = x.sum(axis=0), x.T @ x
     values, vectors = _model(added, squares, n, _ALIKE, variance)
-    return n * (_distance(values, vectors, added / n, added, squares, n) + np.log(values).sum())
+    surprise: float = n * (_distance(values, vectors, added / n, added, squares, n) + np.log(values).sum())
+    return surprise
 
 
 def difference(x: Floats, start: int, cut: int, end: int, variance: float = _BESIDE_VARIANCE) -> float:
