@@ -16,7 +16,7 @@ from miburi.report.page import Table, embedded, read_table, render
 from miburi.report.words import FIGURES, TABLES
 
 FILMS = 1_500_000
-"""Bytes of films that the page carries itself; more of them lie beside it."""
+"""Bytes of films that the page carries itself, the smallest first; the others lie beside it."""
 
 _BODY_TABLES, _SPEED_TABLES, _HAND_TABLES = (
     ("table1", "table2", "table3"),
@@ -224,9 +224,14 @@ def _search(path: str) -> dict[str, Any]:
 
 def _films(paths: Paths, about: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
     films = [p for p in paths if p.endswith(".mp4")]
-    carried = sum(Path(p).stat().st_size for p in films) <= FILMS
+    inside, room = set(), FILMS
+    for path in sorted(films, key=lambda p: (Path(p).stat().st_size, p)):
+        room -= Path(path).stat().st_size
+        if room >= 0:
+            inside.add(path)
     found = []
     for path in films:
+        carried = path in inside
         kind = "simulated" if about[corpus_of(path)]["simulated"] else "recorded"
         compared = ", recorded and put end to end and generated" if "compared" in Path(path).parts else ""
         sheet = path.replace(".mp4", "_sheet.png")
