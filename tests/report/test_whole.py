@@ -18,7 +18,10 @@ def test_a_run_without_anything(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     takes.parent.mkdir(parents=True)
     takes.write_text("take,subject,frames,fps,seconds,recording\n<b>a,s,60,30.0,2.0,f/a.bvh\n")
     about = {"mine": {"kind": "body", "simulated": False}}
-    text = report({"takes": [str(takes)]}, config.model_dump(mode="json"), about, {}, {})
+    Path("results/left_out.csv").write_text("label,error\nr,0.1\n")
+    given = {"takes": [str(takes)], "tables": ["results/left_out.csv"]}
+    text = report(given, config.model_dump(mode="json"), about, {}, {})
+    assert 'id="left_out">left out<' in text, "a table that the page does not know is shown all the same"
     assert "&lt;b&gt;a" in text
     assert "Simulated, not recorded" not in text
     for absent in ("segmentation", "gestures", "models", "retrieval", "films"):
@@ -26,7 +29,9 @@ def test_a_run_without_anything(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         assert f'href="#{absent}"' not in text
 
 
-def test_films_that_are_too_large_lie_beside_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_films_that_are_too_large_lie_beside_the_page(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     folder = Path("results/mine/film")
     folder.mkdir(parents=True)

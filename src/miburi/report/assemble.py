@@ -215,7 +215,8 @@ def _hit_tile(table: Table | None, name: str, protocol: str) -> list[tuple[str, 
     printed = float(row["hit10_paper"]) / float(row["users_paper"]) if row["hit10_paper"] else None
     paper = "" if printed is None else f"; the paper {100 * printed:.0f}{_PERCENT}"
     chance = f"; chance {100 * float(row['chance10']) / users:.0f}{_PERCENT}"
-    words = f"of users found the motion among the first 10: {measure}, {name.replace('table', 'table ')} of [P], protocol {protocol}{paper}{chance}"
+    where = f"{measure}, {name.replace('table', 'table ')} of [P], protocol {protocol}"
+    words = f"of users found the motion among the first 10: {where}{paper}{chance}"
     return [(f"{100 * float(row['hit10']) / users:.0f}{_PERCENT}", words)]
 
 
