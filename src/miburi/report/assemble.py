@@ -194,9 +194,10 @@ def tiles(
     for name, protocol in (("table1", "1"), ("table1", "2"), ("table3", "2")):
         found += _hit_tile(tables.get(name), name, protocol)
     if "length, this run" in lengths:
-        found.append(
-            (f"{lengths['length, this run']} frames", "length of the generated string (printed: 238)")
-        )
+        counts = tables["label_counts"].records() if "label_counts" in tables else []
+        printed = next((r["paper"] for r in counts if r["quantity"] == "length, this run"), "")
+        words = "length of the generated string" + (f" (printed: {printed})" if printed else "")
+        found.append((f"{lengths['length, this run']} frames", words))
     generated, spliced = (lengths.get(f"largest jump at joins, {k}") for k in ("generated", "spliced"))
     if generated and spliced:
         words = f"largest jump where labels meet, generated; {float(spliced):.1f}° put end to end"
@@ -215,9 +216,8 @@ def _hit_tile(table: Table | None, name: str, protocol: str) -> list[tuple[str, 
     printed = float(row["hit10_paper"]) / float(row["users_paper"]) if row["hit10_paper"] else None
     paper = "" if printed is None else f"; the paper {100 * printed:.0f}{_PERCENT}"
     chance = f"; chance {100 * float(row['chance10']) / users:.0f}{_PERCENT}"
-    words = (
-        f"of users found the motion among the first 10: {measure}, {name.replace('table', 'table ')} of [P], protocol {protocol}{paper}{chance}"
-    )
+    where = f"{measure}, {name.replace('table', 'table ')} of [P], protocol {protocol}"
+    words = f"of users found the motion among the first 10: {where}{paper}{chance}"
     return [(f"{100 * float(row['hit10']) / users:.0f}{_PERCENT}", words)]
 
 

@@ -16,7 +16,7 @@ from miburi.report.page import Table, embedded, read_table, render
 from miburi.report.words import FIGURES, TABLES
 
 FILMS = 1_500_000
-"""Bytes of films that the page carries itself; more of them lie beside it."""
+"""Bytes of films that the page carries itself, the smallest first; the others lie beside it."""
 
 _BODY_TABLES, _SPEED_TABLES, _HAND_TABLES = (
     ("table1", "table2", "table3", "puppeteers"),
@@ -34,6 +34,7 @@ _PARTS = (
     ("retrieval", "Retrieval"),
     ("searches", "Searches"),
     ("films", "Films"),
+    ("more", "Further tables and figures"),
     ("speed", "Speed"),
     ("metrics", "Metrics"),
 )
@@ -83,7 +84,11 @@ def report(
         _films(files["films"], about),
     )
     absent = {n for n in ("segmentation", "gestures", "models", "retrieval") if n not in packs}
-    absent |= {n for n, there in (("searches", searches), ("films", films)) if not there}
+    more = _shown([t for t in tables if t not in TABLES], tables, where)
+    pictures = [_figure(p) for p in files["figures"] if p.endswith(".png")]
+    other = [f for f in pictures if f["name"] not in FIGURES]
+    for name, there in (("searches", searches), ("films", films), ("more", more or other)):
+        absent |= set() if there else {name}
     if any(t in tables for t in _BODY_TABLES):
         absent -= {"retrieval"}
     return render(
@@ -104,7 +109,9 @@ def report(
         labels=[(corpus_of(p), assemble.labels(p)) for p in files["annotations"]],
         skipped=[(corpus_of(p), read_table(p)) for p in files["skipped"]],
         segmentation_tables=[(corpus_of(p), read_table(p)) for p in files["segmentation"]],
-        figures=[_figure(p) for p in files["figures"] if Path(p).stem in FIGURES],
+        figures=[f for f in pictures if f["name"] in FIGURES],
+        more_tables=more,
+        more_figures=other,
         hand_tables=_shown(_HAND_TABLES, tables, where),
         model_table=Table(hands.MODEL_COLUMNS, tuple(hands.model_rows(models))),
         body_tables=_shown(_BODY_TABLES, tables, where),
@@ -191,8 +198,9 @@ def _lengths(paths: Paths) -> dict[str, str]:
 
 
 def _figure(path: str) -> dict[str, str]:
-    title, words = FIGURES[Path(path).stem]
-    return {"data": embedded(path), "alt": title, "words": words}
+    name = Path(path).stem
+    title, words = FIGURES.get(name, (name.replace("_", " "), ""))
+    return {"name": name, "data": embedded(path), "alt": title, "words": words}
 
 
 def _shown(
@@ -201,8 +209,8 @@ def _shown(
     return [
         {
             "name": name,
-            "title": TABLES[name][0],
-            "words": TABLES[name][1],
+            "title": TABLES.get(name, (name.replace("_", " "), ""))[0],
+            "words": TABLES.get(name, (name, ""))[1],
             "path": where[name],
             "table": tables[name],
             "plots": _PLOTS[name](tables[name].records()) if name in _PLOTS else [],
@@ -224,9 +232,14 @@ def _search(path: str) -> dict[str, Any]:
 
 def _films(paths: Paths, about: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
     films = [p for p in paths if p.endswith(".mp4")]
-    carried = sum(Path(p).stat().st_size for p in films) <= FILMS
+    inside, room = set(), FILMS
+    for path in sorted(films, key=lambda p: (Path(p).stat().st_size, p)):
+        room -= Path(path).stat().st_size
+        if room >= 0:
+            inside.add(path)
     found = []
     for path in films:
+        carried = path in inside
         kind = "simulated" if about[corpus_of(path)]["simulated"] else "recorded"
         compared = ", recorded and put end to end and generated" if "compared" in Path(path).parts else ""
         sheet = path.replace(".mp4", "_sheet.png")

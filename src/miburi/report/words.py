@@ -6,7 +6,7 @@ TABLES = {
     "table1": (
         "Table 1 of [P]: who finds the motion among the first 10",
         "Of the users of experiment 1, how many have a segment with the keyword among the first 10 (5). Protocol 1: "
-        "the clip that was shown is imitated; protocol 2: only the keyword is given. The rows `mean` are computed "
+        "the clip that was shown is imitated; protocol 2: only the keyword is given. The rows “mean” are computed "
         "from the rows, the paper's too; chance is what a random order would give.",
     ),
     "table2": (
