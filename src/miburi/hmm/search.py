@@ -61,8 +61,8 @@ def joint_durations(
     Returns
     -------
     (S,)
-        With the sum of `start`. No one, two or four frames given by one state to another within three make it likelier: the best
-        that is near, which need not be the best of all. States whose durations do not vary keep them.
+        With the sum of `start`. No one, two or four frames given by one state to another within three make it
+        likelier: the best that is near, which need not be the best of all. States whose durations do not vary keep them.
 
     Raises
     ------
