@@ -2,10 +2,13 @@
 
     python benchmarks/bench_hmm.py [--repeats N]
 
+The row of rendering is printed by bench_render.py.
+
 Sequences are simulated smooth movements of 48 values with deltas. Training starts every peer from the same
 parameters and runs the same 20 iterations; results are compared before anything is timed. hmmlearn gets the
 exit as one state more, which only a row appended to each sequence can be in: 20 rows and a state more are
-part of its time. Times are the smallest of several runs, peers in turn, one thread, without compilation.
+part of its time. Times are the processor's, the smallest of several runs, peers in turn, one thread, without
+compilation.
 """
 
 from __future__ import annotations
@@ -16,14 +19,18 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import argparse
 import logging
+import tempfile
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.linalg import solveh_banded
 
-from miburi.hmm import deltas, global_variance, mlpg, synthesize, train, windows
+from miburi import formats
+from miburi.hmm import by_label, deltas, global_variance, mlpg, synthesize, train, windows
+from miburi.perform import janken
 
 Arrays = list[np.ndarray]
 COUNTS = (21, 20, 20, 21, 21, 21, 20, 20, 20, 21, 21, 21, 21, 20, 21, 21, 21, 21, 20, 21)  # 413 frames
@@ -50,14 +57,16 @@ def gaussians(frames: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     return mean.repeat(6, 0)[:frames], variance.repeat(6, 0)[:frames]
 
 
-def fastest(works: list[Callable[[], object]], repeats: int) -> list[float]:
+def fastest(
+    works: list[Callable[[], object]], repeats: int, clock: Callable[[], float] = time.process_time
+) -> list[float]:
     """Seconds of each, the smallest of several runs, in turn."""
     best = [np.inf] * len(works)
     for _ in range(repeats):
         for k, work in enumerate(works):
-            start = time.perf_counter()
+            start = clock()
             work()
-            best[k] = min(best[k], time.perf_counter() - start)
+            best[k] = min(best[k], clock() - start)
     return best
 
 
@@ -132,6 +141,32 @@ def bench_training(repeats: int) -> None:
 
     (seconds,) = fastest([nine], repeats)
     print(f"nine models with janken's numbers of intervals, a string of nine labels: {seconds * 1e3:.1f} ms")
+    recorded = performed()
+
+    def saved() -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            varies = global_variance([x for x, _ in recorded])
+            for label, intervals in by_label(recorded).items():
+                train(intervals, label=label, reference=varies, fps=30.0).save(f"{folder}/{label}.h5")
+
+    for what, clock in (("processor", time.process_time), ("by the wall", time.perf_counter)):
+        (seconds,) = fastest([saved], repeats, clock)
+        print(
+            f"all nine models of janken, features to saved models: {seconds * 1e3:.1f} ms, {what} (limit 500)"
+        )
+
+
+def performed() -> list[tuple[np.ndarray, list[tuple[int, int, str]]]]:
+    """Angles and labels of janken's three recordings, read from their logs."""
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        janken.write(folder, 2011)
+        for take in janken.RECORDINGS:
+            motion = formats.read(Path(folder) / f"{take}.csv")
+            labels = formats.read_labels(Path(folder) / f"{take}.lab", fps=motion.fps, frames=len(motion))
+            assert motion.angles is not None
+            found.append((motion.angles, labels))
+    return found
 
 
 def banded(mean: np.ndarray, variance: np.ndarray) -> np.ndarray:
@@ -186,8 +221,12 @@ def bench_generation(repeats: int) -> None:
     mlpg(*gaussians(10))
     for frames in (238, 2000, 20_000):
         mean, variance = gaussians(frames)
+        lasting = np.full(len(mean[::6]), 6)
+        lasting[-1] = frames - lasting[:-1].sum()
+        steps = np.ascontiguousarray(mean[::6]), np.ascontiguousarray(variance[::6])
         peers: dict[str, Callable[[], np.ndarray] | None] = {
-            "miburi": lambda m=mean, v=variance: mlpg(m, v),
+            "miburi, from states": lambda s=steps, n=lasting: mlpg(*s, frames=n),
+            "miburi, from frames": lambda m=mean, v=variance: mlpg(m, v),
             "scipy, banded per value": lambda m=mean, v=variance: banded(m, v),
             "nnmnkwii": nnmnkwii_peer(mean, variance),
         }
@@ -195,17 +234,48 @@ def bench_generation(repeats: int) -> None:
             peers["dense solve per value"] = lambda m=mean, v=variance: dense(m, v)
         print(f"\ngeneration, 48 values, {frames} frames")
         if peers["nnmnkwii"] is None:
-            print("nnmnkwii is not installed: nothing to compare with")
+            print(
+                "nnmnkwii is not installed (its build and use need setuptools < 81): nothing to compare with"
+            )
         there = {name: work for name, work in peers.items() if work is not None}
         x = mlpg(mean, variance)
-        for name, work in list(there.items())[1:]:
+        for name, work in list(there.items())[1:]:  # results first, which also compiles
             print(f"{name}: largest difference {np.abs(work() - x).max():.1e}")
         table(list(there), fastest(list(there.values()), repeats if frames < 20_000 else 3))
-    print("\ntime per frame")
-    for frames in (10**3, 10**4, 10**5):
-        mean, variance = gaussians(frames)
-        (seconds,) = fastest([lambda m=mean, v=variance: mlpg(m, v)], 3)
-        print(f"{frames:8} frames {seconds * 1e3:10.3f} ms {seconds / frames * 1e6:8.3f} µs per frame")
+    bench_growth()
+
+
+def states(frames: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A staircase of 6 frames a step, from its states: mean, variance (S, 144) and frames (S,)."""
+    mean, variance = gaussians(6 * 39)
+    times = -(-frames // (6 * 39))
+    lasting = np.full(39 * times, 6)
+    return np.tile(mean[::6], (times, 1)), np.tile(variance[::6], (times, 1)), lasting
+
+
+def bench_growth() -> None:
+    """Time and memory per frame; memory is that of a process of its own, above one that generates nothing."""
+    print("\ngeneration from states, time and peak memory beside the Gaussians")
+    for frames in (10**3, 10**4, 10**5, 10**6):
+        mean, variance, lasting = states(frames)
+        count = int(lasting.sum())
+        idle = peak(lambda: None)
+        work = lambda m=mean, v=variance, n=lasting: mlpg(m, v, frames=n)  # noqa: E731
+        taken = 1024 * (peak(work) - idle)
+        (seconds,) = fastest([work], 5 if frames < 10**6 else 2)
+        print(
+            f"{count:8} frames {seconds * 1e3:10.3f} ms {seconds / count * 1e6:8.3f} µs per frame"
+            f"{taken / 2**20:10.1f} MB {taken / count:8.0f} bytes per frame"
+        )
+
+
+def peak(work: Callable[[], object]) -> int:
+    """Largest resident size of a child that does the work, KB."""
+    child = os.fork()
+    if not child:
+        work()
+        os._exit(0)
+    return os.wait4(child, 0)[2].ru_maxrss
 
 
 def table(names: list[str], seconds: list[float]) -> None:

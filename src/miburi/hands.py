@@ -119,9 +119,5 @@ def angle_of(name: str) -> tuple[int, str]:
         )
     finger, number = joint.rstrip("0123456789"), joint.lstrip("abcdefghijklmnopqrstuvwxyz")
     of = "" if finger == "thumb" else " finger"
-    words = (
-        "wrist"
-        if not number
-        else f"{finger}{of},\n{('first', 'second', 'third')[int(number) - 1]} joint"
-    )
+    words = "wrist" if not number else f"{finger}{of},\n{('first', 'second', 'third')[int(number) - 1]} joint"
     return 3 * HAND.index(joint) + "zxy".index(axis), words if axis == "x" else f"{words}, {axis.upper()}"

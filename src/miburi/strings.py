@@ -102,11 +102,7 @@ def _check_pairs(words: Sequence[Word], successions: Sequence[Succession], who: 
     for place, (one, other) in enumerate(pairwise(words), 1):
         there = after.get(one.label, [])
         if other.label not in there:
-            known = (
-                f"only {', '.join(sorted(there))} follow{'s' * (len(there) == 1)} it"
-                if there
-                else "nothing does"
-            )
+            known = f"after it come {', '.join(sorted(there))}" if there else "nothing comes after it"
             raise InputError(
                 f"{who}: labels {place} and {place + 1} are {one.label!r} and {other.label!r}, which "
                 f"follow each other in no recording; {known}"

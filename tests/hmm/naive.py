@@ -136,3 +136,40 @@ def mlpg(mean, variance, half):
         mu = mean[:, m::features].T.ravel()
         out[:, m] = np.linalg.solve(w.T @ precision @ w, w.T @ precision @ mu)
     return out
+
+
+def rows_of_frame(frames, t, half):
+    """Rows of W that lie within the frames at t: which window (0, 1, 2) and its coefficients over all frames."""
+    w = window_matrix(frames, half)
+    return [(k, w[k * frames + t]) for k in range(3) if w[k * frames + t].any()]
+
+
+def full_parts(mean, covariance, half):
+    """For each frame, W's rows over all features together (n, T M), their means and their covariance."""
+    frames, dims = mean.shape[0], mean.shape[1] // 3
+    for t in range(frames):
+        rows, chosen = [], []
+        for k, row in rows_of_frame(frames, t, half):
+            for m in range(dims):
+                all_features = np.zeros((frames, dims))
+                all_features[:, m] = row
+                rows.append(all_features.ravel())
+                chosen.append(k * dims + m)
+        yield np.array(rows), mean[t][chosen], covariance[t][np.ix_(chosen, chosen)]
+
+
+def full_mlpg(mean, covariance, half):
+    """Eqs. (23) to (25) with full covariances, one dense system."""
+    frames, dims = mean.shape[0], mean.shape[1] // 3
+    left, right = np.zeros((frames * dims, frames * dims)), np.zeros(frames * dims)
+    for w, mu, u in full_parts(mean, covariance, half):
+        left += w.T @ np.linalg.inv(u) @ w
+        right += w.T @ np.linalg.inv(u) @ mu
+    return np.linalg.solve(left, right).reshape(frames, dims)
+
+
+def log_likelihood(x, mean, covariance, half):
+    """Log density of a trajectory and its deltas, frame after frame."""
+    return sum(
+        multivariate_normal.logpdf(w @ x.ravel(), mu, u) for w, mu, u in full_parts(mean, covariance, half)
+    )

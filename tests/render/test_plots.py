@@ -24,12 +24,16 @@ def draw(kind, path, x=X):
         )
     elif kind == "staircase":
         plots.staircase(path, x, np.repeat([60, 30, 5], [10, 12, 8]), np.full(30, 9.0), EDGES, LABELS, 30)
+    elif kind == "by_states":
+        plots.by_states(
+            path, {"diagonal": {1: x[0], 2: 3.0, 3: 4.0}, "full": {1: -9.0}}, ylabel="log-likelihood"
+        )
     else:
         bars = [plots.Bar("DSPM(PCA)", x[0], 8, 80, 7.4), plots.Bar("MSM", 30), plots.Bar("mean pose", 47)]
         plots.measures(path, bars, xlabel="mean rank of the target (simulated queries)", chance=135)
 
 
-@pytest.mark.parametrize("kind", ["curve", "spliced", "staircase", "measures"])
+@pytest.mark.parametrize("kind", ["curve", "spliced", "staircase", "by_states", "measures"])
 @pytest.mark.parametrize("suffix", ["png", "svg"])
 def test_the_same_bytes_for_the_same_numbers(tmp_path, kind, suffix):
     a, b, c = (tmp_path / f"{n}.{suffix}" for n in "abc")
@@ -74,5 +78,7 @@ def test_endings_and_empty_plots(tmp_path):
         draw("curve", tmp_path / "a.gif")
     with pytest.raises(InputError, match="no measure"):
         plots.measures(tmp_path / "a.png", [], xlabel="rank")
+    with pytest.raises(InputError, match="no model"):
+        plots.by_states(tmp_path / "a.png", {"full": {}}, ylabel="log-likelihood")
     with pytest.raises(InputError, match="30 frames"):
         plots.staircase(tmp_path / "a.png", X, np.zeros(3), np.zeros(3), EDGES, LABELS, 30)

@@ -31,7 +31,7 @@ def test_tables_show_the_papers_figures_beside_ours(finished: Project, name: str
         assert {row["queries"] for row in table} == {"simulated"}
 
 
-@pytest.mark.parametrize("name", ["fig4.png", "fig5.png", "fig6.png"])
+@pytest.mark.parametrize("name", ["fig4.png", "fig5.png", "fig6.png", "staircase.png"])
 def test_figures(finished: Project, name: str) -> None:
     assert (finished.path / "results" / name).read_bytes().startswith(b"\x89PNG")
 

@@ -34,6 +34,15 @@ def code(script):
     return code_digest(str(SCRIPTS / script))
 
 
+def models_of_string(wildcards):
+    """Models of a string's labels; of one that is drawn at random, once it is."""
+    words = CONFIG.strings[wildcards.string].labels
+    if FLOW.is_random(wildcards.string):
+        with checkpoints.words.get(**wildcards).output[0].open() as file:
+            words = file.read()
+    return FLOW.models(wildcards.corpus, words)
+
+
 def megabytes(base, factor=0):
     """Memory of a job: a base and a multiple of its input's size."""
     return lambda wildcards, input: int(base + factor * input.size_mb)

@@ -41,15 +41,6 @@ checkpoint words:
         "../scripts/words.py"
 
 
-def models_of_string(wildcards):
-    """Models of a string's labels."""
-    words = CONFIG.strings[wildcards.string].labels
-    if FLOW.is_random(wildcards.string):
-        with checkpoints.words.get(**wildcards).output[0].open() as file:
-            words = file.read()
-    return FLOW.models(wildcards.corpus, words)
-
-
 rule synthesize:
     input:
         words="results/{corpus}/synthesis/{string}.txt",

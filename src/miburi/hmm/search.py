@@ -14,6 +14,7 @@ from miburi.hmm.windows import Floats, Half, windows
 
 _PASSES = 100  # over all durations, at most
 _NEAR = 3  # states between which frames are exchanged
+_SIZES = (1, -1, 2, -2, 4, -4)  # frames at a time
 _SAME = 1e-9  # a smaller gain is rounding
 
 
@@ -60,8 +61,8 @@ def joint_durations(
     Returns
     -------
     (S,)
-        With the sum of `start`. No frame given by one state to another within three makes it likelier: the best
-        that is near, which need not be the best of all. States whose durations do not vary keep them.
+        With the sum of `start`. No one, two or four frames given by one state to another within three make it
+        likelier: the best that is near, which need not be the best of all. States whose durations do not vary keep them.
 
     Raises
     ------
@@ -93,7 +94,7 @@ def joint_durations(
 
 
 def _moves(varies: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
-    """Changes of durations that are tried: a frame of one state for another, near one."""
+    """Changes of durations that are tried: some frames of one state for another, near one."""
     one = np.eye(len(varies), dtype=np.int64)
     pairs = [
         (i, j)
@@ -101,4 +102,4 @@ def _moves(varies: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
         for i, j in zip(range(len(varies)), range(distance, len(varies)), strict=False)
         if varies[i] and varies[j]
     ]
-    return [sign * (one[i] - one[j]) for i, j in pairs for sign in (1, -1)]
+    return [size * (one[i] - one[j]) for i, j in pairs for size in _SIZES]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from miburi.errors import InputError
@@ -96,7 +97,7 @@ def with_spread(
     (Toda and Tokuda, eq. 24). They climb by gradients; but for one feature, where the gradient is 0,
     (R + λ H) c = r with λ = 2 (v(c) − m) / (s T ω) and H the matrix that takes the mean away. v falls as λ grows,
     so λ is one root, found by halving an interval for all features at once; of each λ, c comes from two banded
-    solves, the mean by the Sherman-Morrison formula. As long as R + λ I is positive definite, as it is kept, c is
+    solves, the mean by the Sherman-Morrison formula. As long as R + λ H is positive definite, as it is kept, c is
     the maximum, not one of several.
     """
     window = windows(half)
@@ -135,7 +136,7 @@ def _gap(
     target: Floats,
     width: Floats,
 ) -> tuple[Floats, Floats]:
-    """c of a λ (M,) and how far v(c) is below what λ stands for, (M,); −∞ where R + λ I is not positive definite."""
+    """c of a λ (M,) and how far v(c) is below what λ stands for, (M,); −∞ where R + λ H is not positive definite."""
     dims = mean.shape[1] // 3
     precision = 1.0 / variance
     precision[:, :dims] += shift
@@ -143,11 +144,37 @@ def _gap(
     changed = 1.0 / precision
     with np.errstate(all="ignore"):
         # means such that the right sides are r, and 1
-        c, margin = solver.trajectory(mean / variance * changed, changed, step, *window)
+        c, _ = solver.trajectory(mean / variance * changed, changed, step, *window)
         ones = np.zeros_like(mean)
         ones[:, :dims] = changed[:, :dims]
         even, _ = solver.trajectory(ones, changed, step, *window)
         share = shift / len(step)
-        c = c + even * (share * c.sum(axis=0) / (1.0 - share * even.sum(axis=0)))
+        rest = 1.0 - share * even.sum(axis=0)  # det(R + λ H) / det(R + λ I)
+        c = c + even * (share * c.sum(axis=0) / rest)
         gap = shift * width / 6.0 + target - c.var(axis=0)
-    return c, np.where((margin > 0.0) & np.isfinite(gap), gap, -np.inf)
+    # R + λ H is R + λ I and, where λ < 0, something positive of rank one: it mends one negative eigenvalue at most
+    below = _negative(changed, step, *window)
+    definite = np.where(below == 0, rest > 0.0, (below == 1) & (rest < 0.0))
+    return c, np.where(definite & np.isfinite(gap), gap, -np.inf)
+
+
+@njit(cache=True)
+def _negative(variance, step, delta, square):  # type: ignore[no-untyped-def]
+    """Number of negative eigenvalues of W' U⁻¹ W, per feature (M,): as many as pivots (Sylvester)."""
+    frames, dims = len(step), variance.shape[1] // 3
+    width = 2 * max(len(delta) // 2, len(square) // 2)
+    band, right = np.zeros((frames, width + 1, dims)), np.zeros((frames, dims))
+    margin, count, nothing = np.empty(dims), np.zeros(dims, dtype=np.int64), np.zeros(dims)
+    for s in range(frames):
+        band[s, 0] += 1.0 / variance[step[s], :dims]
+        for w in range(2):
+            window = delta if w == 0 else square
+            half = len(window) // 2
+            if s >= half and s + half < frames:
+                precision = 1.0 / variance[step[s], (w + 1) * dims : (w + 2) * dims]
+                solver.add_row(band, right, precision, nothing, s, window)
+    for t in range(frames):
+        solver.factor_row(band, right, t, width, margin)
+        for m in range(dims):
+            count[m] += band[t, 0, m] < 0.0
+    return count
