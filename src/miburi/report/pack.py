@@ -76,7 +76,7 @@ class Clips:
     """
 
     fps: float = 30.0
-    room: int = 3_000_000
+    room: int = 2_600_000
     skeletons: list[dict[str, Any]] = field(default_factory=list)
     about: dict[str, dict[str, Any]] = field(default_factory=dict)
     data: dict[str, str] = field(default_factory=dict)
