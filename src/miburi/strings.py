@@ -78,7 +78,7 @@ def parse(
 
 
 def _word(text: str, place: int, labels: Sequence[str] | Mapping[str, object], who: str) -> Word:
-    if text.split() != [text]:
+    if text in labels and text.split() != [text]:
         raise InputError(f"label {text!r} has a blank in it, which separates the labels of a string")
     if text in labels:
         return Word(text, text)

@@ -46,8 +46,9 @@ def mlpg(
     of all windows where the longest reaches outside. With full covariances all dimensions are one system, of
     half-width (2 max(L1, L2) + 1) M, by Cholesky: O(T M³ L²); rows outside are integrated out.
     """
-    mu = checked_frames(mean, "mlpg: mean")
-    v = np.ascontiguousarray(variance, dtype=np.float64)
+    # writable, so that the kernels are not compiled once more for arrays that are not
+    mu = np.require(checked_frames(mean, "mlpg: mean"), requirements="W")
+    v = np.require(variance, dtype=np.float64, requirements=["C", "W"])
     _check(mu, v)
     step = steps_of(len(mu), frames)
     if v.ndim == 3:

@@ -62,7 +62,8 @@ def joint_durations(
     -------
     (S,)
         With the sum of `start`. No one, two or four frames given by one state to another within three make it
-        likelier: the best that is near, which need not be the best of all. States whose durations do not vary keep them.
+        likelier: the best that is near, which need not be the best of all. States whose durations do
+        not vary keep them.
 
     Raises
     ------
