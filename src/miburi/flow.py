@@ -230,7 +230,7 @@ class Flow:
         folder = self.experiment_folder(experiment)
         return [f"{folder}/ranks/{experiment}/{m}.h5" for m in self.config.experiments[experiment].measures]
 
-    def models(self, corpus: str, measure: str) -> list[str]:
+    def gplvm(self, corpus: str, measure: str) -> list[str]:
         """GP-LVMs of a corpus, where a measure needs them."""
         return [f"results/{corpus}/gplvm.h5"] if "GP-LVM" in measure else []
 

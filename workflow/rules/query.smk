@@ -24,7 +24,7 @@ rule query_features:
 rule rank:
     input:
         index="results/{corpus}/index.h5",
-        models=lambda wildcards: FLOW.models(wildcards.corpus, wildcards.measure),
+        models=lambda wildcards: FLOW.gplvm(wildcards.corpus, wildcards.measure),
         table="data/raw/{corpus}/queries/{experiment}/queries.tsv",
         queries="results/{corpus}/queries/{experiment}.h5",
         takes="results/{corpus}/takes.csv",
@@ -47,7 +47,7 @@ rule rank:
 rule search:
     input:
         index="results/{corpus}/index.h5",
-        models=lambda wildcards: FLOW.models(wildcards.corpus, CONFIG.search_measure),
+        models=lambda wildcards: FLOW.gplvm(wildcards.corpus, CONFIG.search_measure),
         takes="results/{corpus}/takes.csv",
         log=lambda wildcards: FLOW.log_of(wildcards.corpus, wildcards.query),
     output:
