@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-import time
 from itertools import pairwise
 from pathlib import Path
 
@@ -76,10 +75,7 @@ def test_plan_depends_on_the_seed_only() -> None:
     assert bodies.plan(3) == bodies.plan(3) != bodies.plan(4)
 
 
-def test_plan_is_cheap() -> None:
-    began = time.perf_counter()
-    bodies.plan(1)
-    assert time.perf_counter() - began < 0.05
+def test_a_plan_imports_nothing_heavy() -> None:
     code = (
         "import sys; before = set(sys.modules); from miburi.perform import bodies; bodies.plan(0); "
         "heavy = {'scipy', 'numba', 'h5py', 'numpy'}; "

@@ -8,6 +8,7 @@ rule page:
         figures=FLOW.figures(),
         films=FLOW.films(),
         searches=FLOW.searches(),
+        segmentation=FLOW.segmentations(),
         lengths=FLOW.lengths(),
         indices=FLOW.indices(),
         metrics="results/metrics.json",

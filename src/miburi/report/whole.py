@@ -13,7 +13,7 @@ from miburi.report import assemble, hands, intervals, run
 from miburi.report.assemble import Bodies, corpus_of, of_corpus
 from miburi.report.pack import Clips
 from miburi.report.page import Table, embedded, read_table, render
-from miburi.report.words import FIGURES, TABLES
+from miburi.report.words import CUTS, FIGURES, TABLES
 
 FILMS = 1_100_000
 """Bytes of films that the page carries itself, the smallest first; the others lie beside it."""
@@ -108,7 +108,7 @@ def report(
         takes=[(corpus_of(p), read_table(p)) for p in files["takes"]],
         labels=[(corpus_of(p), assemble.labels(p)) for p in files["annotations"]],
         skipped=[(corpus_of(p), read_table(p)) for p in files["skipped"]],
-        segmentation_tables=[(corpus_of(p), read_table(p)) for p in files["segmentation"]],
+        segmentation_tables=[(f"{corpus_of(p)}: {CUTS[Path(p).stem]}", read_table(p)) for p in files["segmentation"]],
         figures=[f for f in pictures if f["name"] in FIGURES],
         more_tables=more,
         more_figures=other,

@@ -50,6 +50,11 @@ TABLES = {
     ),
 }
 
+CUTS = {
+    "segmentation": "cuts against what was annotated",
+    "segment_lengths": "how long the segments are",
+}
+
 FIGURES = {
     "fig4": (
         "Figure 4 of [H]: the generated curve",
