@@ -18,6 +18,10 @@ FLOW = flow.plan(config)
 CONFIG = FLOW.config
 
 
+# the way from bodies to ranks is the longest: its jobs go first, so that no core is idle at the end
+SEARCHED = 5
+
+
 wildcard_constraints:
     corpus=flow.one_of(CONFIG.corpora),
     shard="[01]*-?[01]+|all",

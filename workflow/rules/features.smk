@@ -11,6 +11,7 @@ rule features:
         "results/logs/features/{corpus}/{shard}.log",
     benchmark:
         "results/benchmarks/features/{corpus}/{shard}.tsv"
+    priority: SEARCHED
     resources:
         mem_mb=megabytes(600, 40),
         runtime=minutes(5, 0.1),

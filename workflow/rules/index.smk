@@ -10,6 +10,7 @@ rule index:
         "results/logs/index/{corpus}.log",
     benchmark:
         "results/benchmarks/index/{corpus}.tsv"
+    priority: SEARCHED
     resources:
         mem_mb=megabytes(600, 10),
         runtime=minutes(5, 0.1),
@@ -31,6 +32,7 @@ rule gplvm:
         "results/logs/gplvm/{corpus}.log",
     benchmark:
         "results/benchmarks/gplvm/{corpus}.tsv"
+    priority: SEARCHED
     resources:
         mem_mb=megabytes(800, 20),
         runtime=minutes(5, 1),

@@ -11,6 +11,7 @@ rule ingest:
         "results/logs/ingest/{corpus}/{shard}.log",
     benchmark:
         "results/benchmarks/ingest/{corpus}/{shard}.tsv"
+    priority: SEARCHED
     resources:
         mem_mb=megabytes(500, 30),
         runtime=minutes(5, 0.1),
@@ -34,6 +35,7 @@ rule annotations:
         "results/logs/annotations/{corpus}.log",
     benchmark:
         "results/benchmarks/annotations/{corpus}.tsv"
+    priority: SEARCHED
     resources:
         mem_mb=megabytes(600, 30),
         runtime=minutes(5, 0.1),

@@ -55,6 +55,7 @@ for _name in FLOW.performed("everyday"):
                 f"results/logs/perform/{_name}/{_performer}.log",
             benchmark:
                 f"results/benchmarks/perform/{_name}/{_performer}.tsv"
+            priority: SEARCHED
             resources:
                 mem_mb=megabytes(1000),
                 runtime=minutes(10),
@@ -102,6 +103,7 @@ rule queries:
         "results/logs/queries/{corpus}/{experiment}.log",
     benchmark:
         "results/benchmarks/queries/{corpus}/{experiment}.tsv"
+    priority: SEARCHED
     resources:
         mem_mb=megabytes(1000, 10),
         runtime=minutes(20, 0.1),

@@ -11,6 +11,7 @@ rule query_features:
         "results/logs/query_features/{corpus}/{experiment}.log",
     benchmark:
         "results/benchmarks/query_features/{corpus}/{experiment}.tsv"
+    priority: SEARCHED
     resources:
         mem_mb=megabytes(800, 20),
         runtime=minutes(10, 0.1),
@@ -34,6 +35,7 @@ rule rank:
         "results/logs/rank/{corpus}/{experiment}/{measure}.log",
     benchmark:
         "results/benchmarks/rank/{corpus}/{experiment}/{measure}.tsv"
+    priority: SEARCHED
     resources:
         mem_mb=megabytes(1000, 10),
         runtime=minutes(10, 1),

@@ -10,6 +10,7 @@ rule segment:
         "results/logs/segment/{corpus}/{shard}.log",
     benchmark:
         "results/benchmarks/segment/{corpus}/{shard}.tsv"
+    priority: SEARCHED
     resources:
         mem_mb=megabytes(600, 30),
         runtime=minutes(10, 1),

@@ -26,7 +26,8 @@ class Settings:
     dims
         Latent dimensions ([P]: 2).
     frames
-        A segment's model is of so many of its drawn frames, evenly spaced: training takes their third power.
+        So many of the drawn frames of each side are trained on and projected, evenly spaced: training takes
+        their third power, projecting their square.
     iterations
         Of L-BFGS at most.
     starts
@@ -87,15 +88,23 @@ class Models:
             for p, end, scale in zip(places, ends, self.scale, strict=True)
         ]
 
+    @cached_property
+    def _rows(self) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+        """The frames that models are trained on, end to end, and the first of each segment."""
+        places = _places(self.offsets, self.settings.frames)
+        starts = np.cumsum([0] + [len(p) for p in places])[:-1]
+        return self.frames[np.concatenate(places)], starts
+
     def errors(self, query: Floats) -> Floats:
-        """Err of each of the query's frames (n, D) in each segment's model, (S, n), metres."""
-        return np.array([gplvm.project(m, query, self.settings.starts)[1] for m in self._models])
+        """Err of the query's frames (n, D), `settings.frames` of them, in each segment's model, (S, n), metres."""
+        some = query[_spaced(len(query), self.settings.frames)]
+        return np.array([gplvm.project(m, some, self.settings.starts)[1] for m in self._models])
 
     def errors_back(self, query: Floats) -> Floats:
-        """Largest Err of each segment's drawn frames in the model of the query's (n, D), (S,), metres."""
-        known = self.settings.fit(query)
-        error = gplvm.project(known, self.frames, self.settings.starts)[1]
-        largest: Floats = np.maximum.reduceat(error, self.offsets[:-1])
+        """Largest Err of each segment's frames in the model of the query's (n, D), (S,), metres."""
+        frames, starts = self._rows
+        error = gplvm.project(self.settings.fit(query), frames, self.settings.starts)[1]
+        largest: Floats = np.maximum.reduceat(error, starts)
         return largest
 
     def save(self, path: str | os.PathLike[str], sources: Mapping[str, str] | None = None) -> None:
