@@ -25,7 +25,7 @@ import numpy as np
 
 from miburi.formats import read
 from miburi.motion import Motion
-from miburi.retrieval import Index, features, measures, reset_yaw, segment
+from miburi.retrieval import Index, features, measures, reset_angles, segment
 from miburi.retrieval.jvh import jvh
 from miburi.retrieval.latent import Settings
 
@@ -58,7 +58,7 @@ def recorded(folder: Path) -> tuple[Takes, Pieces]:
     takes, pieces = [], []
 
     def add(motion: Motion, cut: bool) -> None:
-        i, x = len(takes), reset_yaw(features(motion))
+        i, x = len(takes), reset_angles(features(motion))
         ends = [0, *segment(motion).tolist(), len(x)] if cut else [0, len(x)]
         takes.append(x)
         pieces.extend((str(i), i, a, b) for a, b in pairwise(ends) if b > a)

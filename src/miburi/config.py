@@ -178,7 +178,9 @@ class Gplvm(Model):
 
     dims: int = Field(2, ge=1, le=10, description="Latent dimensions.")
     frames: int = Field(
-        25, ge=2, description="So many of the drawn frames of each side are trained on and projected, evenly spaced."
+        25,
+        ge=2,
+        description="So many of the drawn frames of each side are trained on and projected, evenly spaced.",
     )
     iterations: int = Field(100, ge=1, description="Iterations of training (L-BFGS) at most.")
     starts: int = Field(2, ge=1, description="Starts from which a new frame's latent point is sought.")

@@ -14,7 +14,7 @@ from miburi.errors import InputError
 from miburi.evaluate.puppeteers import Target, compare, rank_of, read_targets, write_comparison
 from miburi.formats import puppet
 from miburi.perform.puppeteer import imitate, users
-from miburi.retrieval.body import features, reset_yaw
+from miburi.retrieval.body import features, reset_angles
 from miburi.retrieval.index import Index
 
 SETTINGS = {"angle_weight": 0.3, "mapped": True}
@@ -33,7 +33,7 @@ def clip(k: int):
 def made(tmp_path_factory):
     """An index of five clips, the clips, and two logs by somebody else."""
     clips = {f"clip{k}": clip(k) for k in (1, 4, 9, 11, 15)}
-    values = [reset_yaw(features(m, **SETTINGS)) for m in clips.values()]
+    values = [reset_angles(features(m, **SETTINGS)) for m in clips.values()]
     index = Index.build(values, [(name, i, 0, 120) for i, name in enumerate(clips)])
     home, logs = tmp_path_factory.mktemp("logs"), {}
     (stranger,) = users("elsewhere", "development", 1, 99)
@@ -62,7 +62,7 @@ def test_ranks_are_those_of_sorted_distances(made):
         for measure in MEASURES:
             by_hand = []
             for m in motions:
-                d = index.distances(reset_yaw(features(m, **SETTINGS)), measure)
+                d = index.distances(reset_angles(features(m, **SETTINGS)), measure)
                 mine = d[index.take.index(take)]
                 by_hand.append(1 + sum(d < mine) + (sum(d == mine) - 1) / 2)
             row = rows[query, measure]
@@ -77,7 +77,7 @@ def test_ranks_are_those_of_sorted_distances(made):
 
 def test_ties_count_at_their_middle(made):
     index, clips, _ = made
-    x = reset_yaw(features(clips["clip4"], **SETTINGS))
+    x = reset_angles(features(clips["clip4"], **SETTINGS))
     twice = Index.build([x, x], [("a", 0, 0, 120), ("b", 1, 0, 120)])
     assert rank_of(twice, x, "a", "mean pose", "max") == 1.5 == rank_of(twice, x, "b", "mean pose", "max")
     with pytest.raises(InputError, match="no segment of the take 'nobody'"):

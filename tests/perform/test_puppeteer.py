@@ -619,10 +619,10 @@ def clips(recordings: Path, every: int) -> dict[str, Motion]:
 
 
 def test_real_clips_are_played_and_neither_too_well_nor_at_random(recordings):
-    from miburi.retrieval import Index, features, reset_yaw
+    from miburi.retrieval import Index, features, reset_angles
 
     corpus = clips(recordings, 4)
-    values = [reset_yaw(features(m)) for m in corpus.values()]
+    values = [reset_angles(features(m)) for m in corpus.values()]
     index = Index.build(values, [(name, i, 0, len(values[i])) for i, name in enumerate(corpus)])
     ranks = []
     for user in users("difficulty", "development", 3, 0):
@@ -630,7 +630,7 @@ def test_real_clips_are_played_and_neither_too_well_nor_at_random(recordings):
             angles, fps = imitate(target, user, seed_parts=(name,))
             assert_in_ranges(angles)
             assert moving(angles).sum(axis=1).max() <= 2
-            order = index.rank(reset_yaw(features(puppet.motion(angles, fps)))).order
+            order = index.rank(reset_angles(features(puppet.motion(angles, fps)))).order
             ranks.append(int(np.flatnonzero(order == i)[0]) + 1)
     chance = (len(corpus) + 1) / 2
     assert 1.2 < np.mean(ranks) < 0.5 * chance

@@ -12,7 +12,7 @@ from tests.workflow.conftest import Project, finished  # noqa: F401
 
 from miburi.formats import puppet
 from miburi.report import search
-from miburi.retrieval.body import features, reset_yaw
+from miburi.retrieval.body import features, reset_angles
 
 ROOT = Path(__file__).parents[2]
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -41,7 +41,7 @@ def pages(finished: Project, tmp_path_factory: pytest.TempPathFactory) -> dict[s
     from miburi.retrieval.index import Index
 
     index = Index.open(results / "index.h5")
-    query = reset_yaw(features(puppet.read(logs[0])))
+    query = reset_angles(features(puppet.read(logs[0])))
     found = index.rank(query, k=12)
     lines = ["rank,take,start_s,end_s,score,measure,queries"]
     for rank, (i, score) in enumerate(zip(found.order, found.score, strict=True), 1):

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from miburi.errors import InputError
 from miburi.figures import BODY_JOINTS, PERSON
 from miburi.motion import Motion, Skeleton
-from miburi.retrieval import features, names, reset_yaw
+from miburi.retrieval import features, names, reset_angles
 
 WEIGHT = 0.3
 
@@ -238,20 +238,39 @@ def test_a_missing_joint_is_named():
 def test_yaw_is_counted_from_each_pieces_mean():
     x = np.zeros((10, 42), np.float32)
     x[:, 39] = np.arange(10)
-    x[:, 40] = 5
-    got = reset_yaw(x, [[5, 8], [0, 4]])
-    np.testing.assert_allclose(got[:, 39], [-1.5, -0.5, 0.5, 1.5, 4, -1, 0, 1, 8, 9])
+    x[:, 40] = 0.2
+    got = reset_angles(x, [[5, 8], [0, 4]])
+    np.testing.assert_allclose(got[:, 39], [-1.5, -0.5, 0.5, 1.5, 4, -1, 0, 1, 8, 9], atol=1e-6)
     np.testing.assert_array_equal(got[:, :39], x[:, :39])
-    np.testing.assert_array_equal(got[:, 40:], x[:, 40:])
+    np.testing.assert_allclose(got[:, 40:], x[:, 40:], atol=1e-6)
     assert x[0, 39] == 0 and x[9, 39] == 9
-    assert reset_yaw(x)[:, 39].sum() == 0
-    np.testing.assert_allclose(reset_yaw(x + 3)[:, 39], reset_yaw(x)[:, 39])
+    assert abs(reset_angles(x)[:, 39].sum()) < 1e-5
+    np.testing.assert_allclose(
+        reset_angles(x + np.array([0] * 39 + [3, 0, 0]))[:, 39], reset_angles(x)[:, 39], atol=1e-5
+    )
+
+
+@pytest.mark.parametrize("axis", ["x", "z"])
+@pytest.mark.parametrize("weight", [0.3, 1.0])
+@pytest.mark.parametrize("turns", [1, 2, -1])
+def test_who_turned_over_before_a_piece_is_the_same_person_in_it(axis, weight, turns):
+    """A somersault or cartwheel, then a bend: the bend's values are those of the bend alone."""
+    before, bend = np.linspace(0, 360 * turns, 200), 30 * np.sin(np.linspace(0, 3, 60))
+    turn = Rotation.from_euler(axis, np.concatenate([before, 360 * turns + bend])[:, None], degrees=True)
+    rotations = np.tile([0.0, 0.0, 0.0, 1.0], (260, len(PERSON.joints), 1))
+    rotations[:, 0] = turn.as_quat()
+    motion = Motion(PERSON, 60.0, np.zeros((260, 3)), rotations)
+    whole = reset_angles(features(motion, angle_weight=weight), [[0, 200], [200, 260]], angle_weight=weight)
+    alone = reset_angles(features(motion[200:], angle_weight=weight), angle_weight=weight)
+    np.testing.assert_allclose(whole[200:], alone, atol=1e-5)
+    first = whole[:200, 39:] / weight
+    assert np.ptp(first, axis=0).max() == pytest.approx(2 * np.pi * abs(turns), abs=0.05), "turns are kept"
 
 
 @pytest.mark.parametrize("pieces", [[[0, 11]], [[-1, 3]], [[3, 3]], [[0, 5], [4, 8]]])
 def test_pieces_that_do_not_fit_are_refused(pieces):
     with pytest.raises(InputError, match="pieces"):
-        reset_yaw(np.zeros((10, 42)), pieces)
+        reset_angles(np.zeros((10, 42)), pieces)
 
 
 def test_a_real_person_stands_upright(recordings):

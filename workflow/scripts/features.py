@@ -1,7 +1,7 @@
 """Motion and segments → the 42 values of each frame."""
 
 from miburi import artefacts, job, store
-from miburi.retrieval.body import features, reset_yaw
+from miburi.retrieval.body import features, reset_angles
 
 
 def main(snakemake):
@@ -10,7 +10,8 @@ def main(snakemake):
     values, fps = {}, {}
     for take, motion in artefacts.read_motions(snakemake.input.motion).items():
         x = features(motion, joints.get(take), **settings)
-        values[take] = reset_yaw(x, [(start, end) for name, start, end in segments if name == take])
+        pieces = [(start, end) for name, start, end in segments if name == take]
+        values[take] = reset_angles(x, pieces, angle_weight=settings["angle_weight"])
         fps[take] = motion.fps
     artefacts.write_features(snakemake.output[0], values, segments, fps, store.sources(*snakemake.input))
 

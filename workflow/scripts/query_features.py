@@ -5,7 +5,7 @@ from pathlib import Path
 from miburi import artefacts, job, store
 from miburi.evaluate.queries import read_queries
 from miburi.formats import puppet
-from miburi.retrieval.body import features, reset_yaw
+from miburi.retrieval.body import features, reset_angles
 
 
 def main(snakemake):
@@ -15,7 +15,8 @@ def main(snakemake):
     }
     for query, path in sorted(logs.items()):
         motion = puppet.read(path)
-        values[query] = reset_yaw(features(motion, **snakemake.params.settings))
+        x = features(motion, **snakemake.params.settings)
+        values[query] = reset_angles(x, angle_weight=snakemake.params.settings["angle_weight"])
         fps[query] = motion.fps
         segments.append((query, 0, len(motion)))
     sources = store.sources(snakemake.input.table, *logs.values())

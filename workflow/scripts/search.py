@@ -4,7 +4,7 @@ import csv
 
 from miburi import job, store
 from miburi.formats import puppet
-from miburi.retrieval.body import features, reset_yaw
+from miburi.retrieval.body import features, reset_angles
 from miburi.retrieval.index import Index
 
 
@@ -13,7 +13,7 @@ def main(snakemake):
     with open(snakemake.input.takes, encoding="utf-8", newline="") as file:
         fps = {row["take"]: float(row["fps"]) for row in csv.DictReader(file)}
     p, log = snakemake.params, snakemake.input.log
-    x = reset_yaw(features(puppet.read(log), **p.settings))
+    x = reset_angles(features(puppet.read(log), **p.settings), angle_weight=p.settings["angle_weight"])
     found = index.rank(x, p.measure, reduction=p.reduction)
     queries = "simulated" if p.simulated or puppet.is_simulated(log) else "recorded"
     with store.replaced(snakemake.output[0]) as path, open(path, "w", encoding="utf-8", newline="") as file:

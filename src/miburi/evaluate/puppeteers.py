@@ -23,7 +23,7 @@ from miburi.evaluate.statistics import chance_rank
 from miburi.formats import puppet
 from miburi.motion import Motion
 from miburi.perform.puppeteer import User, imitate
-from miburi.retrieval.body import features, reset_yaw
+from miburi.retrieval.body import features, reset_angles
 from miburi.retrieval.index import Index
 from miburi.retrieval.ranking import ranking
 
@@ -152,7 +152,9 @@ def compare(
             imitate(clips[target.take], u, seed_parts=(seed, "puppeteers", target.query)) for u in players
         ]
         motions = [puppet.read(log), *(puppet.motion(angles, fps) for angles, fps in played)]
-        values = [reset_yaw(features(m, **settings)) for m in motions]
+        values = [
+            reset_angles(features(m, **settings), angle_weight=settings["angle_weight"]) for m in motions
+        ]
         said = "simulated" if simulated or puppet.is_simulated(log) else "recorded"
         for measure in measures:
             theirs, *ours = (rank_of(index, x, target.take, measure, reduction) for x in values)

@@ -108,7 +108,9 @@ def report(
         takes=[(corpus_of(p), read_table(p)) for p in files["takes"]],
         labels=[(corpus_of(p), assemble.labels(p)) for p in files["annotations"]],
         skipped=[(corpus_of(p), read_table(p)) for p in files["skipped"]],
-        segmentation_tables=[(f"{corpus_of(p)}: {CUTS[Path(p).stem]}", read_table(p)) for p in files["segmentation"]],
+        segmentation_tables=[
+            (f"{corpus_of(p)}: {CUTS[Path(p).stem]}", read_table(p)) for p in files["segmentation"]
+        ],
         figures=[f for f in pictures if f["name"] in FIGURES],
         more_tables=more,
         more_figures=other,

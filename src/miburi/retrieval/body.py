@@ -137,13 +137,16 @@ def features(
     return x
 
 
-def reset_yaw(x: ArrayLike, pieces: ArrayLike | None = None) -> NDArray[np.float32]:
-    """Count the yaw of each piece from the piece's own mean.
+def reset_angles(
+    x: ArrayLike, pieces: ArrayLike | None = None, *, angle_weight: float = 0.3
+) -> NDArray[np.float32]:
+    """Count the trunk's angles of each piece anew, whatever came before it.
 
-    A puppet knows no north, and a person may perform the same motion in any direction. The mean is used, not
-    the first frame, because a piece may begin a little earlier or later and its first frame is one noisy
-    value, while a turn of the same size has the same shape about its mean. A query is one piece and gets the
-    same treatment.
+    A puppet knows no north, and a person may perform the same motion in any direction: the yaw is counted from
+    the piece's own mean. The mean is used, not the first frame, because a piece may begin a little earlier or
+    later and its first frame is one noisy value, while a turn of the same size has the same shape about its
+    mean. Who has turned over before the piece is not another person for it: pitch and roll begin as if the
+    piece were all there is. A query is one piece and gets the same treatment.
 
     Parameters
     ----------
@@ -151,6 +154,8 @@ def reset_yaw(x: ArrayLike, pieces: ArrayLike | None = None) -> NDArray[np.float
         Features.
     pieces : (S, 2), optional
         Start (inclusive) and end (exclusive) of pieces that do not overlap; absent: all of `x` is one piece.
+    angle_weight
+        Metres that one radian counts in `x`, as in `features`.
 
     Returns
     -------
@@ -177,5 +182,11 @@ def reset_yaw(x: ArrayLike, pieces: ArrayLike | None = None) -> NDArray[np.float
     ):
         raise InputError(f"pieces must be non-empty, apart and inside the {len(out)} frames")
     for start, end in order:
-        out[start:end, YAW] -= out[start:end, YAW].mean(dtype=np.float64)
+        angles = out[start:end, YAW:].astype(np.float64) / angle_weight
+        turned = (angles[0, 1] + np.pi) % (2 * np.pi) - np.pi
+        if abs(turned) > np.pi / 2:  # the same attitudes, begun on the usual side: see `_followed`
+            angles = angles * [1.0, -1.0, 1.0] + np.pi
+        angles[:, 1:] -= 2 * np.pi * np.round(angles[0, 1:] / (2 * np.pi))
+        angles[:, 0] -= angles[:, 0].mean()
+        out[start:end, YAW:] = angle_weight * angles
     return out
