@@ -38,7 +38,7 @@ $(VENV)/.lock: requirements.lock | system
 	@if [ ! -e $@ ]; then rm -rf $(VENV) && $(PYTHON) -m venv $(VENV); fi
 	@if cmp -s $< $@; then touch $@; else \
 		echo "installing requirements.lock into $(VENV): a minute or two"; rm -f $@; \
-		$(PIP) install --no-deps --require-hashes -r $< && cp $< $@.part && mv $@.part $@; fi
+		$(PIP) install --no-deps --no-compile --require-hashes -r $< && cp $< $@.part && mv $@.part $@; fi
 
 $(VENV)/.complete: $(VENV)/.lock pyproject.toml
 	@$(PIP) install --no-deps --no-build-isolation --editable .
