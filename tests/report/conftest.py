@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -41,11 +42,14 @@ def pages(finished: Project, tmp_path_factory: pytest.TempPathFactory) -> dict[s
     from miburi.retrieval.index import Index
 
     index = Index.open(results / "index.h5")
+    with open(results / "takes.csv", encoding="utf-8", newline="") as file:
+        fps = {row["take"]: float(row["fps"]) for row in csv.DictReader(file)}
     query = reset_angles(features(puppet.read(logs[0])))
     found = index.rank(query, k=12)
     lines = ["rank,take,start_s,end_s,score,measure,queries"]
     for rank, (i, score) in enumerate(zip(found.order, found.score, strict=True), 1):
-        span = f"{index.start[i] / 60:.3f},{index.end[i] / 60:.3f}"
+        rate = fps[index.take[i]]
+        span = f"{index.start[i] / rate:.3f},{index.end[i] / rate:.3f}"
         lines.append(f"{rank},{index.take[i]},{span},{score:.6g},DSPM(PCA),simulated")
     table.write_text("\n".join(lines) + "\n")
     motions = [str(p) for p in sorted((results / "motion").glob("*.h5"))]
