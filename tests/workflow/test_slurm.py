@@ -118,7 +118,7 @@ def test_a_run_on_slurm_gives_the_bytes_of_a_local_run(
         "--latency-wait=5",
         "--slurm-init-seconds-before-status-checks=3",
         "--default-resources=slurm_partition=main",
-        timeout=1200,
+        timeout=3000,
     )
     assert run.status == 0, run.terminal[-4000:]
     assert "SLURM jobid" in run.terminal or "slurm" in run.terminal.lower()
