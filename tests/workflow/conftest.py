@@ -69,7 +69,7 @@ class Project:
     def environment(self) -> dict[str, str]:
         return {**os.environ, "PYTHONPATH": str(self.path / "src"), "COLUMNS": "200"}
 
-    def snakemake(self, *arguments: str, timeout: float = 1200) -> Run:
+    def snakemake(self, *arguments: str, timeout: float = 3000) -> Run:
         """Run snakemake on the small config, with more arguments."""
         if not any(a.startswith("--configfile") for a in arguments):
             arguments = (
