@@ -6,8 +6,6 @@ The names below are the library's face; they are imported when they are first us
 from __future__ import annotations
 
 import importlib
-import os
-import sys
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -64,28 +62,3 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
-
-
-def _keep_kernels_fresh() -> None:
-    """Name numba's cache after the package's sources.
-
-    numba keeps a compiled function although a function that it calls in another module has changed. A folder whose
-    name is the digest of all sources makes that impossible.
-    """
-    if "NUMBA_CACHE_DIR" in os.environ:
-        return
-    import hashlib
-    from pathlib import Path
-
-    here = Path(__file__).parent
-    digest = hashlib.sha256()
-    for path in sorted(here.rglob("*.py")):
-        digest.update(str(path.relative_to(here)).encode())
-        digest.update(path.read_bytes())
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    os.environ["NUMBA_CACHE_DIR"] = str(home / "miburi" / f"kernels-{digest.hexdigest()[:16]}")
-    if "numba" in sys.modules:
-        sys.modules["numba"].config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
-
-
-_keep_kernels_fresh()

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from miburi.compiled import njit
 from miburi.errors import InputError
 from miburi.motion import Floats, Motion
 
@@ -61,7 +61,7 @@ def forward(motion: Motion) -> tuple[Floats, Floats]:
     return positions, world
 
 
-@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator, unused-ignore]
+@njit(error_model="numpy")
 def _chain(
     parents: NDArray[np.int32],
     steps: Floats,

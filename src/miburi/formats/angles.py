@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from miburi.compiled import njit
 from miburi.motion import Floats
 
 
-@numba.njit(cache=True)
+@njit
 def _compose(values, columns, axes, bases, half, out):  # type: ignore[no-untyped-def]
     for t in range(values.shape[0]):
         for j in range(columns.shape[0]):

@@ -17,9 +17,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import numba
 import numpy as np
 
+from miburi.compiled import njit
 from miburi.errors import InputError
 from miburi.formats import angles, text
 from miburi.formats.asf import Acclaim, Bone, read_asf
@@ -199,7 +199,7 @@ def _check_line(path: text.File, line: int, words: list[str], bones: dict[str, B
         )
 
 
-@numba.njit(cache=True)
+@njit
 def _blank(flat, names, bounds, counts):  # type: ignore[no-untyped-def]
     """Blank names and ends of lines within frames; whether every frame has the same lines as the first."""
     n = len(flat)

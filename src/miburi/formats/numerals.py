@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from miburi.compiled import njit
 from miburi.motion import Floats
 
 _MOST = 1e9  # beyond it, whole millionths and their digits do not fit
 
 
-@numba.njit(cache=True)
+@njit
 def _fill(table, out):  # type: ignore[no-untyped-def]
     at = 0
     rows, columns = table.shape

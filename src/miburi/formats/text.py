@@ -11,10 +11,10 @@ import zlib
 from pathlib import Path
 from typing import BinaryIO, NoReturn
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from miburi.compiled import njit
 from miburi.errors import InputError
 from miburi.motion import Floats
 from miburi.paths import stem as stem
@@ -105,7 +105,7 @@ def real(token: str | bytes) -> float | None:
 _TENS = np.array([10.0**k for k in range(23)])
 
 
-@numba.njit(cache=True)
+@njit
 def _scan(text, begin, columns, broken, tens, values, starts, hard):  # type: ignore[no-untyped-def]
     """Parse blank-separated numbers.
 

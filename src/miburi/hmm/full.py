@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_factor, cho_solve, solveh_banded
 
+from miburi.compiled import njit
 from miburi.errors import InputError
 from miburi.hmm.densities import one_thread
 from miburi.hmm.windows import Floats
@@ -131,7 +131,7 @@ def _said(
     return _Said(np.ascontiguousarray(w.T @ weighted), weighted.T @ mean[rows], reach)
 
 
-@njit(cache=True)
+@njit
 def _add(band, left, first):  # type: ignore[no-untyped-def]
     """Add a frame's part of R, rows and columns from `first` on, to its lower band: band[c, r − c] is R[r, c]."""
     for c in range(len(left)):

@@ -8,7 +8,8 @@ With an exit, a sequence ends in the last state and leaves it; without, it may e
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from miburi.compiled import njit
 
 # sums may be taken in another order (vectors), but infinities and signs stay what they are
 _SUMS = {"reassoc", "contract", "nsz"}
@@ -16,7 +17,7 @@ _NEGLIGIBLE = 40.0  # exp(−40) is below the spacing of numbers at 1
 _LOG_ZERO = -746.0  # exp of it is 0
 
 
-@njit(cache=True, fastmath=_SUMS)
+@njit(fastmath=_SUMS)
 def log_densities(x, mean, variance):  # type: ignore[no-untyped-def]
     """Log density of each frame in each state's Gaussian, (T, N): x (T, D), mean and variance (N, D)."""
     frames, dims = x.shape
@@ -38,7 +39,7 @@ def log_densities(x, mean, variance):  # type: ignore[no-untyped-def]
     return out
 
 
-@njit(cache=True, fastmath=_SUMS)
+@njit(fastmath=_SUMS)
 def moments(x, gamma, centre):  # type: ignore[no-untyped-def]
     """Weighted sums of x − centre and its squares: (N, D) each.
 
@@ -59,7 +60,7 @@ def moments(x, gamma, centre):  # type: ignore[no-untyped-def]
     return first, second
 
 
-@njit(cache=True)
+@njit
 def _add(a, b):  # type: ignore[no-untyped-def]
     """log(exp(a) + exp(b))."""
     if a < b:
@@ -69,14 +70,14 @@ def _add(a, b):  # type: ignore[no-untyped-def]
     return a + np.log1p(np.exp(b - a))
 
 
-@njit(cache=True)
+@njit
 def _exp(a):  # type: ignore[no-untyped-def]
     if a < _LOG_ZERO:
         return 0.0
     return np.exp(a)
 
 
-@njit(cache=True)
+@njit
 def forward(density, offsets, stay, leave):  # type: ignore[no-untyped-def]
     """Log probability of a sequence's frames up to t and of state i at t: α (T, N)."""
     frames, states = density.shape
@@ -95,7 +96,7 @@ def forward(density, offsets, stay, leave):  # type: ignore[no-untyped-def]
     return alpha
 
 
-@njit(cache=True)
+@njit
 def backward(density, offsets, stay, leave, exits):  # type: ignore[no-untyped-def]
     """Log probability of a sequence's frames after t, and of its end, given state i at t: β (T, N)."""
     frames, states = density.shape
@@ -116,7 +117,7 @@ def backward(density, offsets, stay, leave, exits):  # type: ignore[no-untyped-d
     return beta
 
 
-@njit(cache=True)
+@njit
 def posteriors(alpha, beta, offsets):  # type: ignore[no-untyped-def]
     """γ (T, N), log normaliser of each frame (T,), log-likelihood of each sequence (K,)."""
     frames, states = alpha.shape
@@ -136,7 +137,7 @@ def posteriors(alpha, beta, offsets):  # type: ignore[no-untyped-def]
     return gamma, norm, likelihood
 
 
-@njit(cache=True)
+@njit
 def expectation(density, offsets, stay, leave, exits):  # type: ignore[no-untyped-def]
     """E step: γ (T, N), expected numbers of stays and of departures of each state (N,), log-likelihood.
 
@@ -159,7 +160,7 @@ def expectation(density, offsets, stay, leave, exits):  # type: ignore[no-untype
     return gamma, stays, departures, likelihood.sum()
 
 
-@njit(cache=True)
+@njit
 def exact_durations(density, offsets, stay, leave, exits):  # type: ignore[no-untyped-def]
     """Sums over χ of 1, d and d² for each state, (3, N), χ from α, β, a_ii and the densities.
 
@@ -196,7 +197,7 @@ def exact_durations(density, offsets, stay, leave, exits):  # type: ignore[no-un
     return sums
 
 
-@njit(cache=True)
+@njit
 def product_durations(density, offsets, stay, leave, exits):  # type: ignore[no-untyped-def]
     """Sums over χ of 1, d and d² for each state, (3, N), χ as the product of γ ([H], eq. 9)."""
     states = density.shape[1]

@@ -8,7 +8,8 @@ features, which lie beside one another.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from miburi.compiled import njit
 
 # sums may be taken in another order (vectors), but infinities and signs stay what they are
 _SUMS = {"reassoc", "contract", "nsz"}
@@ -16,7 +17,7 @@ _SINGULAR = 1e-13  # a pivot below this share of its diagonal element is roundin
 _BLOCK = 48  # features that `_narrow` solves side by side: a hand's; known beforehand, so that loops become vectors
 
 
-@njit(cache=True)
+@njit
 def trajectory(mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
     """Solve for all features; windows delta (2 L1 + 1,) and square (2 L2 + 1,).
 
@@ -27,7 +28,7 @@ def trajectory(mean, variance, step, delta, square):  # type: ignore[no-untyped-
     return wide(mean, variance, step, delta, square)
 
 
-@njit(cache=True, fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=_SUMS, error_model="numpy")
 def _narrow(mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
     """`wide` for windows of half length 1, a few times faster: a frame's work is one loop."""
     frames, dims = len(step), mean.shape[1] // 3
@@ -92,7 +93,7 @@ def _narrow(mean, variance, step, delta, square):  # type: ignore[no-untyped-def
     return x, margin
 
 
-@njit(cache=True, fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=_SUMS, error_model="numpy")
 def _say(said, slot, mean, variance, i, first, stop, edge, delta, square):  # type: ignore[no-untyped-def]
     """What a frame s with the Gaussians of step i says of R and r.
 
@@ -115,7 +116,7 @@ def _say(said, slot, mean, variance, i, first, stop, edge, delta, square):  # ty
         said[slot, 6, m - first] = b * q2 + q1
 
 
-@njit(cache=True, fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=_SUMS, error_model="numpy")
 def wide(mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
     """`trajectory` for windows of any length.
 
@@ -155,7 +156,7 @@ def wide(mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
     return x, margin
 
 
-@njit(cache=True, fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=_SUMS, error_model="numpy")
 def add_row(band, r, precision, weighted, s, window):  # type: ignore[no-untyped-def]
     """Add to R and r what a window says at frame s."""
     half = len(window) // 2
@@ -173,7 +174,7 @@ def add_row(band, r, precision, weighted, s, window):  # type: ignore[no-untyped
                     band[t, j - i, m] += b * precision[m]
 
 
-@njit(cache=True, fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=_SUMS, error_model="numpy")
 def factor_row(band, y, t, width, margin):  # type: ignore[no-untyped-def]
     """Row t of L and 1 / D, and of the forward substitution."""
     dims = y.shape[1]
@@ -194,7 +195,7 @@ def factor_row(band, y, t, width, margin):  # type: ignore[no-untyped-def]
         band[t, 0, m] = 1.0 / band[t, 0, m]
 
 
-@njit(cache=True, fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=_SUMS, error_model="numpy")
 def log_density(x, mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
     """Log density of a trajectory x (T, M) and of its deltas in the Gaussians of its frames, per feature (M,)."""
     frames, dims = x.shape

@@ -7,9 +7,9 @@ from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike
 
+from miburi.compiled import njit
 from miburi.errors import InputError
 from miburi.hmm import solver
 from miburi.hmm.generation import mlpg
@@ -73,7 +73,7 @@ def stream(steps: Iterable[Step], delay: int, *, half: Half = (1, 1)) -> Iterato
         yield from _back(band, right, min(delay, count) - 1)
 
 
-@njit(cache=True)
+@njit
 def _push(gaussians, count, delta, square, raw, raw_right, band, right):  # type: ignore[no-untyped-def]
     """Take in the last of the Gaussians, which is frame `count`'s.
 
@@ -107,7 +107,7 @@ def _push(gaussians, count, delta, square, raw, raw_right, band, right):  # type
         solver.factor_row(band, right, t, width, margin)
 
 
-@njit(cache=True)
+@njit
 def _back(band, right, delay):  # type: ignore[no-untyped-def]
     """The last delay + 1 frames of the trajectory, if the string ended here."""
     width, last = band.shape[1] - 1, len(band) - 1

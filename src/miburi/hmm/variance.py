@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from miburi.compiled import njit
 from miburi.errors import InputError
 from miburi.hmm import solver
 from miburi.hmm.model import Model
@@ -158,7 +158,7 @@ def _gap(
     return c, np.where(definite & np.isfinite(gap), gap, -np.inf)
 
 
-@njit(cache=True)
+@njit
 def _negative(variance, step, delta, square):  # type: ignore[no-untyped-def]
     """Number of negative eigenvalues of W' U⁻¹ W, per feature (M,): as many as pivots (Sylvester)."""
     frames, dims = len(step), variance.shape[1] // 3

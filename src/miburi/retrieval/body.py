@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from miburi.compiled import njit
 from miburi.conventions import find_joints
 from miburi.errors import InputError
 from miburi.figures import BODY_JOINTS, PERSON
@@ -35,7 +35,7 @@ def names() -> list[str]:
     return [f"{joint}_{axis}" for joint in BODY_JOINTS for axis in "xyz"] + ["yaw", "pitch", "roll"]
 
 
-@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator, unused-ignore]
+@njit(error_model="numpy")
 def _fill(
     positions: Floats,
     where: NDArray[np.int64],

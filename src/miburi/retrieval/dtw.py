@@ -17,9 +17,9 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from miburi.compiled import njit
 from miburi.motion import Floats
 
 # Rows of the cost matrix that are computed before it is asked whether the segment can still matter.
@@ -120,7 +120,7 @@ def first(known: Sequences, query: Floats, k: int) -> Floats:
     return found
 
 
-@njit(cache=True)
+@njit
 def _rest(frames, low, high, rounding):  # type: ignore[no-untyped-def]
     """What frames t, t + 1 … cost at least in each segment, (S, n + 1); frames (D, n)."""
     width, n = frames.shape
@@ -137,7 +137,7 @@ def _rest(frames, low, high, rounding):  # type: ignore[no-untyped-def]
     return rest
 
 
-@njit(cache=True)
+@njit
 def _longest(offsets):  # type: ignore[no-untyped-def]
     longest = 0
     for i in range(len(offsets) - 1):
@@ -145,7 +145,7 @@ def _longest(offsets):  # type: ignore[no-untyped-def]
     return longest
 
 
-@njit(cache=True)
+@njit
 def _all(columns, rows, offsets):  # type: ignore[no-untyped-def]
     out, longest = np.empty(len(offsets) - 1), _longest(offsets)
     path, cost, nothing = np.empty(longest + 1), np.empty(longest * _ROWS), np.zeros(len(columns) + 1)
@@ -154,7 +154,7 @@ def _all(columns, rows, offsets):  # type: ignore[no-untyped-def]
     return out
 
 
-@njit(cache=True)
+@njit
 def _first(todo, rest, short_columns, short, columns, rows, offsets, k):  # type: ignore[no-untyped-def]
     out, best, longest = np.full(len(offsets) - 1, np.inf), np.full(k, np.inf), _longest(offsets)
     path, cost = np.empty(longest + 1), np.empty(longest * _ROWS)
@@ -174,7 +174,7 @@ def _first(todo, rest, short_columns, short, columns, rows, offsets, k):  # type
     return out
 
 
-@njit(cache=True)
+@njit
 def _square(columns, rows, rest, limit, path, scratch):  # type: ignore[no-untyped-def]
     """Sum of squares along the best path; infinity as soon as it cannot be ≤ limit.
 
@@ -192,7 +192,7 @@ def _square(columns, rows, rest, limit, path, scratch):  # type: ignore[no-untyp
     return max(path[len(rows)], 0.0)
 
 
-@njit(cache=True)
+@njit
 def _follow(cost, path):  # type: ignore[no-untyped-def]
     """Go on by the rows of cost (r, m); returns the least sum of any path that ends in the last of them.
 

@@ -14,12 +14,12 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike
 from scipy.linalg import lapack
 from scipy.optimize import minimize
 from scipy.stats import qmc
 
+from miburi.compiled import njit
 from miburi.motion import Floats
 from miburi.retrieval import subspace
 
@@ -241,7 +241,7 @@ def project(known: Model, x: ArrayLike, starts: int = 2, iterations: int = 20) -
     return latent, error
 
 
-@njit(cache=True)
+@njit
 def _value(x, latent, scale, inverse, along, square, width, k, both, gradient):  # type: ignore[no-untyped-def]
     """−log p(frame | x) without its constant; fills gradient (q,); k (N,) and both (2 N,) are scratch."""
     n, q = latent.shape
@@ -272,7 +272,7 @@ def _value(x, latent, scale, inverse, along, square, width, k, both, gradient): 
     return 0.5 * width * np.log(variance) + error * by_error
 
 
-@njit(cache=True)
+@njit
 def _descend(first, points, latent, scale, inverse, along, square, width, starts, iterations):  # type: ignore[no-untyped-def]
     """Best latent point of each frame, (n, q), and its value, (n,), by BFGS from several starts."""
     n, q = latent.shape
@@ -358,7 +358,7 @@ def _descend(first, points, latent, scale, inverse, along, square, width, starts
     return out, values
 
 
-@njit(cache=True)
+@njit
 def _update(hessian, step, y, dot, fresh):  # type: ignore[no-untyped-def]
     """BFGS update of an inverse, scaled to the first step where it is fresh (Nocedal and Wright, 6.17, 6.20)."""
     q = len(step)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike
 
+from miburi.compiled import njit
 from miburi.motion import Floats
 
 
@@ -47,7 +47,7 @@ def bhattacharyya(roots: ArrayLike, q: ArrayLike) -> Floats:
     return similar
 
 
-@njit(cache=True)
+@njit
 def overlap(roots, root):  # type: ignore[no-untyped-def]
     """`bhattacharyya` of square roots: roots (S, D), root (D,); returns (S,)."""
     out = np.empty(len(roots))

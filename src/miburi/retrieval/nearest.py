@@ -13,9 +13,9 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from miburi.compiled import njit
 from miburi.motion import Floats
 from miburi.retrieval.jvh import overlap
 from miburi.retrieval.subspace import reduced, residuals, shared
@@ -173,7 +173,7 @@ def dspm_first(least: Floats, with_jvh: bool, k: int, segments: Segments, query:
     return out
 
 
-@njit(cache=True)
+@njit
 def _visit(todo, least, with_jvh, roots, means, bases, blocks, offsets, frames, mean, basis, root, out, best):  # type: ignore[no-untyped-def]
     """Fill out[i] for i in `todo` that can matter, and best, the k smallest distances so far, sorted."""
     width, n = frames.shape

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Literal
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from miburi.compiled import njit
 from miburi.conventions import find_joints
 from miburi.errors import InputError
 from miburi.figures import BODY_JOINTS
@@ -90,7 +90,7 @@ def _main_axes(x: Floats) -> Floats:
     return np.ascontiguousarray(centred @ vectors[:, kept][:, ::-1])
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
+@njit
 def _model(added: Floats, squares: Floats, n: int, noise: float, variance: float) -> tuple[Floats, Floats]:
     """PPCA of n frames by their sum and sum of outer products: variances, ascending, along their axes."""
     mean = added / n
@@ -108,7 +108,7 @@ def _model(added: Floats, squares: Floats, n: int, noise: float, variance: float
     return values, vectors
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
+@njit
 def _distance(values: Floats, vectors: Floats, mean: Floats, added: Floats, squares: Floats, n: int) -> float:
     """Mean squared Mahalanobis distance of n frames, given as sums, from a model."""
     shift = np.outer(added / n, mean)
@@ -119,7 +119,7 @@ def _distance(values: Floats, vectors: Floats, mean: Floats, added: Floats, squa
     return h
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
+@njit
 def _curve(
     x: Floats, start: int, window: int, ahead: int, step: int, variance: float, rise: float, hold: int
 ) -> tuple[Cuts, Floats, int]:
@@ -199,7 +199,7 @@ def _one_way(
         start = cut
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
+@njit
 def _surprise(x: Floats, variance: float) -> float:
     """Twice the negative log-likelihood of frames under their own PPCA, without the constant."""
     n = len(x)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike
 
+from miburi.compiled import njit
 from miburi.motion import Floats
 
 # A direction in which frames differ by less (root of the mean square, metres) is rounding of float32, not
@@ -44,7 +44,7 @@ def fit(x: ArrayLike, dims: int) -> tuple[Floats, Floats]:
     return mean, basis
 
 
-@njit(cache=True)
+@njit
 def residuals(block, mean, basis, total, along):  # type: ignore[no-untyped-def]
     """Fill total[:n] with Err² (eq. 1) of the frames in the columns of block (D, n)."""
     width, n = block.shape
@@ -69,7 +69,7 @@ def residuals(block, mean, basis, total, along):  # type: ignore[no-untyped-def]
             total[j] -= along[m, j] * along[m, j]
 
 
-@njit(cache=True)
+@njit
 def reduced(total, n, mean_not_max):  # type: ignore[no-untyped-def]
     """Largest or mean Err of the first n squares; rounding below zero is zero."""
     worst, added = 0.0, 0.0
@@ -79,7 +79,7 @@ def reduced(total, n, mean_not_max):  # type: ignore[no-untyped-def]
     return added / n if mean_not_max else np.sqrt(worst)
 
 
-@njit(cache=True)
+@njit
 def frames_to_subspaces(frames, means, bases, mean_not_max):  # type: ignore[no-untyped-def]
     """Err(H_s, x_n) over the query's frames for every segment s.
 
@@ -93,7 +93,7 @@ def frames_to_subspaces(frames, means, bases, mean_not_max):  # type: ignore[no-
     return out
 
 
-@njit(cache=True)
+@njit
 def samples_to_subspace(blocks, offsets, mean, basis):  # type: ignore[no-untyped-def]
     """max_n Err(Q, x^H_n) for every segment.
 
@@ -113,7 +113,7 @@ def samples_to_subspace(blocks, offsets, mean, basis):  # type: ignore[no-untype
     return out
 
 
-@njit(cache=True)
+@njit
 def shared(bases, basis):  # type: ignore[no-untyped-def]
     """Σ cos² of the canonical angles between each segment's subspace and the query's.
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from miburi.compiled import njit
 from miburi.formats.puppet import COLUMNS
 from miburi.motion import Floats
 
@@ -73,7 +73,7 @@ def quantise(angles: Floats) -> Floats:
     return counts * STEP + 0.0  # no negative zeros
 
 
-@njit(cache=True)
+@njit
 def _turn(q, v, out):  # type: ignore[no-untyped-def]
     """out[0] = R v with R = Rz(z) Rx(−x) Ry(y), q = (z, x, y); out[1..3] its derivatives by z, x, y."""
     cz, sz, cx, sx, cy, sy = (
@@ -99,14 +99,14 @@ def _turn(q, v, out):  # type: ignore[no-untyped-def]
             out[k, 0], out[k, 1], out[k, 2] = a * cz - b * sz, a * sz + b * cz, c
 
 
-@njit(cache=True)
+@njit
 def _tip(bend, upper, lower, leg):  # type: ignore[no-untyped-def]
     """Hand or foot from shoulder or hip before R turns it: elbows bend forward, knees backward."""
     forward = -lower * np.sin(bend) if leg else lower * np.sin(bend)
     return 0.0, -upper - lower * np.cos(bend), forward
 
 
-@njit(cache=True)
+@njit
 def _solve(a, b):  # type: ignore[no-untyped-def]
     """b becomes the solution of a x = b for a symmetric positive definite 3 × 3 matrix (Cholesky)."""
     l00 = np.sqrt(a[0, 0])
@@ -122,7 +122,7 @@ def _solve(a, b):  # type: ignore[no-untyped-def]
     b[0] = (y0 - l10 * b[1] - l20 * b[2]) / l00
 
 
-@njit(cache=True)
+@njit
 def _step(q, hand, elbow, weight, v, upper, ranges):  # type: ignore[no-untyped-def]
     """One damped least-squares step of (z, x, y) towards the wanted places; returns the largest change."""
     a, b = np.empty((4, 3)), np.empty((4, 3))
@@ -153,7 +153,7 @@ def _step(q, hand, elbow, weight, v, upper, ranges):  # type: ignore[no-untyped-
     return largest
 
 
-@njit(cache=True)
+@njit
 def solve(q, hand, elbow, weight, upper, lower, leg, ranges):  # type: ignore[no-untyped-def]
     """Angles (z, x, y, bend), radians, of a left limb that reaches for `hand`, from the angles q on.
 
@@ -188,7 +188,7 @@ _BEGINNINGS = np.radians(
 )
 
 
-@njit(cache=True)
+@njit
 def settle(q, hand, elbow, weight, upper, lower, leg, ranges):  # type: ignore[no-untyped-def]
     """`solve` from several beginnings, at leisure: the pose whose hand or foot comes closest."""
     best, least = q.copy(), np.inf
@@ -208,7 +208,7 @@ def settle(q, hand, elbow, weight, upper, lower, leg, ranges):  # type: ignore[n
     return best
 
 
-@njit(cache=True)
+@njit
 def follow(  # type: ignore[no-untyped-def]
     start, hands, elbows, held, join, weight, stick, upper, lower, leg, ranges
 ):
