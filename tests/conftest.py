@@ -19,3 +19,17 @@ def recordings() -> Path:
     if not (folder / "README.md").exists():
         pytest.skip(f"no real recordings in {folder} (set MIBURI_RECORDINGS)")
     return folder
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Runs of the workflow come first, those that wait for each other in one process; single tests fill the rest."""
+    first: dict[str, list[pytest.Item]] = {"workflow": [], "test_kill": [], "test_slurm": []}
+    others = []
+    for item in items:
+        if item.path.parent.name in ("workflow", "report"):
+            name = item.path.stem if item.path.stem in first else "workflow"
+            item.add_marker(pytest.mark.xdist_group(name))
+            first[name].append(item)
+        else:
+            others.append(item)
+    items[:] = [*(item for group in first.values() for item in group), *others]

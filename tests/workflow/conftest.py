@@ -18,16 +18,6 @@ from pathlib import Path
 import h5py
 import pytest
 
-GROUPS = {"test_kill": "kill", "test_slurm": "slurm"}
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Runs of the workflow share the machine's cores: those of a group follow one another."""
-    for item in items:
-        if item.path.parent == Path(__file__).parent:
-            item.add_marker(pytest.mark.xdist_group(GROUPS.get(item.path.stem, "workflow")))
-
-
 ROOT = Path(__file__).parents[2]
 PARTS = ("Snakefile", "workflow", "profiles", "config", "src")
 

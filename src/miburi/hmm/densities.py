@@ -5,20 +5,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
-from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
 
 from miburi.hmm import kernels
 from miburi.hmm.windows import Floats
+from miburi.threads import one_thread
 
-_Work = TypeVar("_Work", bound=Callable[..., Any])
-# linear algebra by one thread, so that results do not depend on how many there are
-one_thread: Callable[[_Work], _Work] = threadpool_limits.wrap(limits=1, user_api="blas")
 _RARE = 1e-8  # a state with fewer expected frames keeps its Gaussian
 
 

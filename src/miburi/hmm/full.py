@@ -11,8 +11,8 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve, solveh_banded
 
 from miburi.compiled import njit
 from miburi.errors import InputError
-from miburi.hmm.densities import one_thread
 from miburi.hmm.windows import Floats
+from miburi.threads import one_thread
 
 MOST = 4e9
 """Bytes of a system at most: some 70 000 frames of a hand."""

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import lapack
 from scipy.optimize import minimize
-from scipy.stats import qmc
 
 from miburi.compiled import njit
 from miburi.motion import Floats
@@ -183,6 +182,8 @@ def model(x: ArrayLike, latent: Floats, scale: Floats) -> Model:
 @cache
 def _spread(dims: int) -> Floats:
     """Points that fill the unit cube evenly, (_SPREAD, dims)."""
+    from scipy.stats import qmc  # most of a second, which only GP-LVM has to wait for
+
     found: Floats = qmc.Halton(dims, scramble=False).random(_SPREAD)
     return found
 

@@ -15,6 +15,7 @@ from miburi import store
 from miburi.errors import InputError
 from miburi.motion import Floats
 from miburi.retrieval import gplvm
+from miburi.threads import one_thread
 
 
 @dataclass(frozen=True)
@@ -95,11 +96,13 @@ class Models:
         starts = np.cumsum([0] + [len(p) for p in places])[:-1]
         return self.frames[np.concatenate(places)], starts
 
+    @one_thread
     def errors(self, query: Floats) -> Floats:
         """Err of the query's frames (n, D), `settings.frames` of them, in each segment's model, (S, n), metres."""
         some = query[_spaced(len(query), self.settings.frames)]
         return np.array([gplvm.project(m, some, self.settings.starts)[1] for m in self._models])
 
+    @one_thread
     def errors_back(self, query: Floats) -> Floats:
         """Largest Err of each segment's frames in the model of the query's (n, D), (S,), metres."""
         frames, starts = self._rows
@@ -121,6 +124,7 @@ def _places(offsets: NDArray[np.int64], wanted: int) -> list[NDArray[np.int64]]:
     return [a + _spaced(int(b - a), wanted) for a, b in pairwise(offsets)]
 
 
+@one_thread
 def train(frames: NDArray[np.float32], offsets: NDArray[np.int64], settings: Settings) -> Models:
     """Train the models of an index's segments (arguments as in `Models`)."""
     found = [
