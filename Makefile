@@ -15,6 +15,8 @@ PYTHON ?= $(shell for p in python3.11 python3 python3.12 python3.13; do \
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
+# on all cores, which pip does not; and at all, because where PYTHONDONTWRITEBYTECODE is set, no job would keep it
+BYTECODE = { $(BIN)/python -m compileall -q -j 0 -x '/tests?/' $(VENV)/lib src >/dev/null || true; }
 CORES ?= all
 BENCHMARKS ?= $(wildcard benchmarks/bench_*.py)
 
@@ -38,7 +40,8 @@ $(VENV)/.lock: requirements.lock | system
 	@if [ ! -e $@ ]; then rm -rf $(VENV) && $(PYTHON) -m venv $(VENV); fi
 	@if cmp -s $< $@; then touch $@; else \
 		echo "installing requirements.lock into $(VENV): a minute or two"; rm -f $@; \
-		$(PIP) install --no-deps --no-compile --require-hashes -r $< && cp $< $@.part && mv $@.part $@; fi
+		$(PIP) install --no-deps --no-compile --require-hashes -r $< && $(BYTECODE) && \
+		cp $< $@.part && mv $@.part $@; fi
 
 $(VENV)/.complete: $(VENV)/.lock pyproject.toml
 	@$(PIP) install --no-deps --no-build-isolation --editable .

@@ -10,6 +10,8 @@ settings.register_profile("miburi", derandomize=True, deadline=None, max_example
 settings.load_profile("miburi")
 
 ROOT = Path(__file__).parents[1]
+DEAR = ("test_bodies", "test_puppeteers", "test_index")
+"""Modules whose fixtures cost more than their tests: one process makes them."""
 
 
 @pytest.fixture(scope="session")
@@ -31,5 +33,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.xdist_group(name))
             first[name].append(item)
         else:
+            if item.path.stem in DEAR:
+                item.add_marker(pytest.mark.xdist_group(item.path.stem))
             others.append(item)
     items[:] = [*(item for group in first.values() for item in group), *others]

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from miburi.errors import InputError
 from miburi.figures import HAND, PERSON
-from miburi.formats import angles, bvh, numerals, text
+from miburi.formats import angles, bvh, numerals, scan
 from miburi.kinematics import euler, hand_rotations
 from miburi.motion import Motion, Skeleton
 
@@ -390,7 +390,7 @@ def test_numbers_are_rounded_as_python_rounds_them(values):
         tokens = [form.format(v) for v in values]
         expected = np.array([float(t) for t in tokens])
         if np.isfinite(expected).all():
-            found = text.numbers("t", " ".join(tokens).encode(), 0, len(values))[0]
+            found = scan.numbers("t", " ".join(tokens).encode(), 0, len(values))[0]
             np.testing.assert_array_equal(found, expected)
             assert (np.signbit(found) == np.signbit(expected)).all()
 

@@ -35,7 +35,7 @@ def killed(tmp_path_factory: pytest.TempPathFactory) -> Project:
     return project
 
 
-def test_it_goes_on_to_the_same_bytes(finished: Project, killed: Project) -> None:
+def test_it_goes_on_to_the_same_bytes(killed: Project, finished: Project) -> None:
     if locked(killed):
         assert killed.snakemake("--unlock").status == 0
     run = killed.snakemake("all")

@@ -14,7 +14,7 @@ import csv
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,9 @@ from miburi.artefacts import Segment
 from miburi.errors import InputError
 from miburi.evaluate.rows import names, read_rows
 from miburi.formats.annotations import Annotation
-from miburi.perform.puppeteer import User
+
+if TYPE_CHECKING:
+    from miburi.perform.puppeteer import User
 
 Path = str | os.PathLike[str]
 

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from miburi.conventions import family
 from miburi.errors import InputError
-from miburi.formats import asf_amc, bvh, glove, puppet, text, units
+from miburi.formats import text
 from miburi.formats.annotations import read_annotations, write_annotations
 from miburi.formats.labels import read_labels, write_labels
 from miburi.motion import Motion, Skeleton
+
+# a format is imported by what reads it: stages that need a table of names only start in half the time
+if TYPE_CHECKING:
+    from miburi.formats import asf_amc, units
 
 KNOWN = (
     ".bvh (Biovision), .amc (Acclaim, with its .asf), .csv (glove log, puppet log), other loggers' "
@@ -70,6 +74,8 @@ def read(
 
 
 def _biovision(path: text.File, fps: float | None, corpus: Any) -> tuple[Motion, units.Choice]:
+    from miburi.formats import bvh
+
     settings = {name: _option(corpus, name) for name in ("unit", "up", "joints")}
     return bvh.load(path, fps=fps, **settings)
 
@@ -77,6 +83,8 @@ def _biovision(path: text.File, fps: float | None, corpus: Any) -> tuple[Motion,
 def _acclaim(
     path: text.File, skeleton: text.File | Skeleton | asf_amc.Acclaim | None, fps: float | None, corpus: Any
 ) -> tuple[Motion, units.Choice]:
+    from miburi.formats import asf_amc, units
+
     unit, up = _option(corpus, "unit"), _option(corpus, "up")
     asf = skeleton if skeleton is not None else _option(corpus, "skeleton")
     if isinstance(asf, Skeleton):
@@ -95,6 +103,8 @@ def _acclaim(
 
 def _table(path: text.File, fps: float | None, corpus: Any) -> Motion:
     """A log or another logger's table."""
+    from miburi.formats import glove, puppet
+
     first = text.load(path)[:200].split(b"\n", 1)[0]
     if puppet.SIGNATURE.encode() in first:
         return puppet.read(path, fps=fps, calibration=_option(corpus, "calibration"))
@@ -119,6 +129,8 @@ def write(path: text.File, motion: Motion) -> None:
     """
     if text.suffix(path) != ".bvh":
         raise InputError(f"{path}: cannot be written; a motion is written as .bvh or .bvh.gz")
+    from miburi.formats import bvh
+
     bvh.write(path, motion)
 
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from miburi.compiled import njit
 from miburi.errors import InputError
-from miburi.formats import angles, text
+from miburi.formats import angles, scan, text
 from miburi.formats.asf import Acclaim, Bone, read_asf
 from miburi.motion import Floats, Motion, Skeleton
 
@@ -140,11 +140,11 @@ def _frames(
     columns = 1 + sum(len(bones[n].dof) for n in names)
     flat = _flattened(data, begin, names, bones)
     try:
-        values = None if flat is None else text.numbers(path, flat, 0, columns)
+        values = None if flat is None else scan.numbers(path, flat, 0, columns)
     except InputError:  # the walk through the lines says which
         values = None
     if values is None:  # blank or indented lines, bones in another order …, or something is wrong
-        values = text.numbers(path, _in_order(path, data, begin, names, bones, skeleton), 0, columns)
+        values = scan.numbers(path, _in_order(path, data, begin, names, bones, skeleton), 0, columns)
     steps = np.diff(values[:, 0])
     if (wrong := np.flatnonzero(steps != 1)).size:
         k = int(wrong[0])

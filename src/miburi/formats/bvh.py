@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from miburi import store
 from miburi.errors import InputError
-from miburi.formats import angles, numerals, text, units
+from miburi.formats import angles, numerals, scan, text, units
 from miburi.formats.bvh_header import MARK, Header, parse
 from miburi.motion import Floats, Motion, Skeleton
 
@@ -133,7 +133,7 @@ def _declared(path: text.File, data: bytes, at: int) -> tuple[int, float, int]:
 def _values(path: text.File, data: bytes, begin: int, frames: int, channels: int) -> Floats:
     if channels == 0:
         raise InputError(f"{path}: no joint has channels, so nothing moves")
-    values = text.numbers(path, data, begin, channels, broken=True)
+    values = scan.numbers(path, data, begin, channels, broken=True)
     if len(values) != frames:
         line = text.line_of(data, begin) - 2
         rows = "1 row" if len(values) == 1 else f"{len(values)} rows"

@@ -34,7 +34,7 @@ import numpy as np
 
 from miburi.errors import InputError
 from miburi.figures import HAND
-from miburi.formats import tables, text
+from miburi.formats import scan, tables, text
 from miburi.motion import Floats
 
 _KEYS = (
@@ -186,7 +186,7 @@ def raw(path: text.File, columns: Map) -> tuple[list[str], Floats]:
     skipped = set(columns.get("text", []))
     numeric = [c for c in range(count) if c not in skipped]
     values = (
-        _mixed(path, plain, begin, count, numeric) if skipped else text.numbers(path, plain, begin, count)
+        _mixed(path, plain, begin, count, numeric) if skipped else scan.numbers(path, plain, begin, count)
     )
     if lying:
         values = np.ascontiguousarray(values.T)

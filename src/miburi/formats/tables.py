@@ -11,7 +11,7 @@ import numpy as np
 import yaml
 
 from miburi.errors import InputError
-from miburi.formats import text
+from miburi.formats import scan, text
 from miburi.motion import Floats
 
 LONGEST_GAP_S = 10.0
@@ -114,7 +114,7 @@ def read(path: text.File, data: bytes) -> tuple[list[str], Floats]:
     begin = start(data)
     plain = data[begin:].replace(b",", b" ")
     try:
-        values = text.numbers(path, plain, 0, len(columns))
+        values = scan.numbers(path, plain, 0, len(columns))
     except InputError:
         values = None
     # as many commas as there should be: a row of "1,,2" must not pass as two values
