@@ -24,16 +24,13 @@ def recordings() -> Path:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Runs of the workflow come first, those that wait for each other in one process; single tests fill the rest."""
-    first: dict[str, list[pytest.Item]] = {"workflow": [], "test_kill": [], "test_slurm": []}
-    others = []
+    """Tests that follow one another in one process, longest first; single tests run beside them meanwhile."""
+    place = {"workflow": 0, "report": 2, "test_kill": 3, "test_slurm": 4}
+    order = {}
     for item in items:
-        if item.path.parent.name in ("workflow", "report"):
-            name = item.path.stem if item.path.stem in first else "workflow"
+        stem, folder = item.path.stem, item.path.parent.name
+        name = stem if stem in DEAR or stem in place else folder if folder in place else None
+        if name is not None:
             item.add_marker(pytest.mark.xdist_group(name))
-            first[name].append(item)
-        else:
-            if item.path.stem in DEAR:
-                item.add_marker(pytest.mark.xdist_group(item.path.stem))
-            others.append(item)
-    items[:] = [*(item for group in first.values() for item in group), *others]
+        order[item] = place.get(name or "", 1)
+    items.sort(key=order.__getitem__)

@@ -208,3 +208,33 @@ def test_motions_come_back(tmp_path):
         artefacts.read_motions(path, ["run"])
     artefacts.write_motions(tmp_path / "n.h5", dict(reversed(motions.items())), {"fist": "fist.csv"}, {})
     assert (tmp_path / "n.h5").read_bytes() == path.read_bytes()  # whatever the order
+
+
+def test_what_a_killed_writer_left_is_removed(tmp_path):
+    target = tmp_path / "a.b (c).h5"
+    script = (
+        "import os, signal; from miburi import store\n"
+        f"with store.create({str(target)!r}, 'x') as file:\n"
+        "    file['x'] = 1; file.flush(); os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == -signal.SIGKILL
+    (left,) = tmp_path.iterdir()
+    store.write_text(target.with_suffix(".csv"), "1")
+    assert left.exists(), "it is of another file"
+    filled(target)
+    assert sorted(tmp_path.iterdir()) == [target.with_suffix(".csv"), target]
+
+
+def test_what_others_are_writing_is_left_alone(tmp_path):
+    target = tmp_path / "a.h5"
+    with store.create(target, "x"):
+        (mine,) = tmp_path.iterdir()
+        script = f"from miburi import store; store.write_text({str(target)!r}, 'by another process')"
+        subprocess.run([sys.executable, "-c", script], check=True)
+        assert mine.exists()
+    elsewhere = tmp_path / ".a.tmp-elsewhere-1.h5"
+    for age, stays in ((0, True), (90_000, False)):
+        elsewhere.write_text("")
+        os.utime(elsewhere, (time.time() - age,) * 2)
+        filled(target)
+        assert elsewhere.exists() == stays

@@ -5,6 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import socket
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -40,12 +42,17 @@ def seed(*parts: object) -> np.random.Generator:
 def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
     """A temporary name beside `path` to write to; becomes `path` at the end, or nothing if something fails.
 
-    The file is synced before it is renamed, so that a crash leaves the old file or the new one.
+    The file is synced before it is renamed, so that a crash leaves the old file or the new one. What killed
+    processes left half-written of the same file is removed.
     """
     target = Path(path)
     target.parent.mkdir(parents=True, exist_ok=True)
+    begun = f".{target.stem}.tmp-"
+    for other in target.parent.iterdir():
+        if other.name.startswith(begun) and other.suffix == target.suffix and _abandoned(other):
+            other.unlink(missing_ok=True)
     # the suffix stays, because writers of films and pictures choose their format by it
-    temporary = target.with_name(f".{target.stem}.tmp-{os.getpid()}{target.suffix}")
+    temporary = target.with_name(f"{begun}{socket.gethostname()}-{os.getpid()}{target.suffix}")
     try:
         yield temporary
         with open(temporary, "rb") as file:
@@ -58,6 +65,20 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
             os.close(folder)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _abandoned(temporary: Path) -> bool:
+    """Whether a temporary file, …HOST-PID.SUFFIX, has no writer any more; another host's is given a day."""
+    host, _, pid = temporary.stem.partition(".tmp-")[2].rpartition("-")
+    try:
+        if host != socket.gethostname() or not pid.isdigit():
+            return time.time() - temporary.stat().st_mtime > 86400
+        os.kill(int(pid), 0)
+    except ProcessLookupError:
+        return True
+    except OSError:
+        return False  # it is gone, or somebody else's
+    return False
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
