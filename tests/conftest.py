@@ -23,6 +23,7 @@ def recordings() -> Path:
     return folder
 
 
+@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the groups
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests that follow one another in one process, longest first; single tests run beside them meanwhile."""
     place = {"workflow": 0, "report": 2, "test_kill": 3, "test_slurm": 4}
