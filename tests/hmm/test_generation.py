@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from miburi import InputError
-from miburi.hmm import deltas, mlpg, windows
+from miburi.hmm import deltas, mlpg, solver, windows
 
 from . import naive
 
@@ -55,6 +55,21 @@ def test_it_equals_a_sparse_solve(half):
         left = (w.T @ scipy.sparse.diags_array(p) @ w).tocsc()
         expected = scipy.sparse.linalg.spsolve(left, right)
         assert np.allclose(found[:, m], expected, rtol=1e-9, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    "frames", [1, 2, solver._PART, solver._PART + 1, 2 * solver._PART, 2 * solver._PART + 2]
+)
+def test_parts_of_a_long_string_join(frames):
+    """States of many lengths, more features than are solved side by side, where parts begin and end."""
+    rng = np.random.default_rng(frames)
+    lasting = rng.integers(1, 9, frames)
+    lasting = lasting[: np.searchsorted(lasting.cumsum(), frames) + 1]
+    lasting[-1] -= lasting.sum() - frames
+    mean, variance = gaussians(rng, len(lasting), 50)
+    step = np.repeat(np.arange(len(lasting)), lasting)
+    expected, _ = solver.wide(mean, variance, step, *windows())
+    np.testing.assert_allclose(mlpg(mean, variance, frames=lasting), expected, rtol=1e-9, atol=1e-9)
 
 
 def nnmnkwii_windows(half):

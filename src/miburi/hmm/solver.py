@@ -14,6 +14,7 @@ from miburi.compiled import njit
 # sums may be taken in another order (vectors), but infinities and signs stay what they are
 _SUMS = {"reassoc", "contract", "nsz"}
 _SINGULAR = 1e-13  # a pivot below this share of its diagonal element is rounding
+_PART = 512  # frames of which L is kept
 _BLOCK = 48  # features that `_narrow` solves side by side: a hand's; known beforehand, so that loops become vectors
 
 
@@ -30,66 +31,97 @@ def trajectory(mean, variance, step, delta, square):  # type: ignore[no-untyped-
 
 @njit(fastmath=_SUMS, error_model="numpy")
 def _narrow(mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
-    """`wide` for windows of half length 1, a few times faster: a frame's work is one loop."""
+    """`wide` for windows of half length 1, a few times faster: a frame's work is one loop.
+
+    L is kept for a part of the frames only. What the next part needs is carried on; all but the last are factored
+    once more, backwards, when their turn comes. So memory is that of x, and L stays in the caches.
+    """
     frames, dims = len(step), mean.shape[1] // 3
     x, margin = np.empty((frames, dims)), np.empty(dims)
-    lower = np.empty((frames + 2, 2, _BLOCK))  # L[t, t − 1] and L[t, t − 2]
+    parts = (frames - 1) // _PART + 1
+    lower = np.empty((min(frames, _PART) + 2, 2, _BLOCK))  # L[t, t − 1] and L[t, t − 2]
     said = np.zeros((4, 7, _BLOCK))  # by three frames that follow one another, and by none
-    carried = np.empty((7, _BLOCK))  # 1 / D of t − 1 and t − 2, L[t − 1, t − 2], y of both, margin, y / D
+    # In one array, so that no loop has to ask whether two of them overlap: 1 / D of t − 1 and t − 2, L[t − 1, t − 2], y
+    # of both, margin, y / D; of t, R[t, t], R[t, t − 1], R[t, t − 2] and r[t]; x of t + 1 and t + 2.
+    w = np.empty((13, _BLOCK))
+    kept = np.empty((parts, 5, _BLOCK))
     for first in range(0, dims, _BLOCK):
         stop = min(first + _BLOCK, dims)
         said[:] = 0.0
         said[:, 0] = 1.0  # what is beyond the last feature is solved too, as 0
-        carried[:] = 0.0
-        carried[5] = np.inf
-        lower[frames:] = 0.0
-        before, now, after = 3, 3, 0
-        _say(said, 0, mean, variance, step[0], first, stop, True, delta, square)
-        for t in range(frames):
-            before, now, s = now, after, t + 1
-            if s == frames:
-                after = 3
-            elif s == 1 or s == frames - 1 or step[s] != step[t]:
-                after = 0
-                while after in (now, before):
-                    after += 1
-                _say(said, after, mean, variance, step[s], first, stop, s == frames - 1, delta, square)
-            for m in range(_BLOCK):
-                diagonal = said[now, 0, m] + said[before, 1, m] + said[after, 1, m]
-                beside = said[before, 2, m] + said[now, 2, m]
-                beyond = said[before, 3, m]
-                right = said[now, 4, m] + said[before, 6, m] + said[after, 5, m]
-                far = beyond * carried[1, m]
-                beside -= beyond * carried[2, m]
-                near = beside * carried[0, m]
-                pivot = diagonal - beyond * far - beside * near
-                y = right - near * carried[3, m] - far * carried[4, m]
-                inverse = 1.0 / pivot
-                carried[5, m] = min(carried[5, m], pivot - _SINGULAR * diagonal)
-                carried[1, m] = carried[0, m]
-                carried[0, m] = inverse
-                carried[2, m] = near
-                carried[4, m] = carried[3, m]
-                carried[3, m] = y
-                carried[6, m] = y * inverse
-                lower[t, 0, m] = near
-                lower[t, 1, m] = far
-            for m in range(first, stop):
-                x[t, m] = carried[6, m - first]
-        carried[:2] = 0.0  # x of t + 1 and t + 2
-        for t in range(frames - 1, -1, -1):
-            for m in range(first, stop):
-                carried[2, m - first] = x[t, m]
-            for m in range(_BLOCK):
-                found = (
-                    carried[2, m] - lower[t + 1, 0, m] * carried[0, m] - lower[t + 2, 1, m] * carried[1, m]
-                )
-                carried[1, m] = carried[0, m]
-                carried[0, m] = found
-            for m in range(first, stop):
-                x[t, m] = carried[0, m - first]
+        w[:] = 0.0
+        w[5] = np.inf
+        lower[:] = 0.0
+        for turn in range(2 * parts - 1):
+            part = turn if turn < parts else 2 * parts - 2 - turn
+            keep = turn >= parts - 1
+            start, end = part * _PART, min(frames, (part + 1) * _PART)
+            if turn < parts:
+                kept[part] = w[:5]
+            else:
+                w[:5] = kept[part]
+                lower[_PART:] = lower[:2]
+            now, after, changed = 3, 0, True
+            if start:
+                now = 1
+                _say(said, 1, mean, variance, step[start - 1], first, stop, start == 1, delta, square)
+            edge = start == 0 or start == frames - 1
+            _say(said, 0, mean, variance, step[start], first, stop, edge, delta, square)
+            before = now
+            for t in range(start, end):
+                changed = changed or now != after or before != now
+                before, now, s = now, after, t + 1
+                if s == frames:
+                    after = 3
+                elif s == 1 or s == frames - 1 or step[s] != step[t]:
+                    after = 0
+                    while after in (now, before):
+                        after += 1
+                    _say(said, after, mean, variance, step[s], first, stop, s == frames - 1, delta, square)
+                if changed or now != after or before != now:
+                    for m in range(_BLOCK):
+                        w[7, m] = said[now, 0, m] + said[before, 1, m] + said[after, 1, m]
+                        w[8, m] = said[before, 2, m] + said[now, 2, m]
+                        w[9, m] = said[before, 3, m]
+                        w[10, m] = said[now, 4, m] + said[before, 6, m] + said[after, 5, m]
+                    changed = False
+                i = t - start if keep else 0
+                for m in range(_BLOCK):
+                    beyond = w[9, m]
+                    far = beyond * w[1, m]
+                    beside = w[8, m] - beyond * w[2, m]
+                    near = beside * w[0, m]
+                    pivot = w[7, m] - beyond * far - beside * near
+                    y = w[10, m] - near * w[3, m] - far * w[4, m]
+                    inverse = 1.0 / pivot
+                    w[5, m] = min(w[5, m], pivot - _SINGULAR * w[7, m])
+                    w[1, m] = w[0, m]
+                    w[0, m] = inverse
+                    w[2, m] = near
+                    w[4, m] = w[3, m]
+                    w[3, m] = y
+                    w[6, m] = y * inverse
+                    lower[i, 0, m] = near
+                    lower[i, 1, m] = far
+                if keep:
+                    row = x[t, first:stop]
+                    for m in range(len(row)):
+                        row[m] = w[6, m]
+            if not keep:
+                continue
+            for t in range(end - 1, start - 1, -1):
+                i = t - start
+                row = x[t, first:stop]
+                for m in range(len(row)):
+                    w[6, m] = row[m]
+                for m in range(_BLOCK):
+                    found = w[6, m] - lower[i + 1, 0, m] * w[11, m] - lower[i + 2, 1, m] * w[12, m]
+                    w[12, m] = w[11, m]
+                    w[11, m] = found
+                for m in range(len(row)):
+                    row[m] = w[11, m]
         for m in range(first, stop):
-            margin[m] = carried[5, m - first]
+            margin[m] = w[5, m - first]
     return x, margin
 
 
@@ -104,16 +136,24 @@ def _say(said, slot, mean, variance, i, first, stop, edge, delta, square):  # ty
     if edge:
         a, b, c = 0.0, 0.0, 0.0
     dims = mean.shape[1] // 3
-    for m in range(first, stop):
-        p, p1, p2 = 1.0 / variance[i, m], 1.0 / variance[i, dims + m], 1.0 / variance[i, 2 * dims + m]
-        q, q1, q2 = p * mean[i, m], a * p1 * mean[i, dims + m], p2 * mean[i, 2 * dims + m]
-        said[slot, 0, m - first] = p + c * c * p2
-        said[slot, 1, m - first] = a * a * p1 + b * b * p2
-        said[slot, 2, m - first] = b * c * p2
-        said[slot, 3, m - first] = b * b * p2 - a * a * p1
-        said[slot, 4, m - first] = q + c * q2
-        said[slot, 5, m - first] = b * q2 - q1
-        said[slot, 6, m - first] = b * q2 + q1
+    # slices, because an index that might be negative keeps loops from becoming vectors
+    v, v1, v2 = (
+        variance[i, first:stop],
+        variance[i, dims + first : dims + stop],
+        variance[i, 2 * dims + first :],
+    )
+    mu, mu1, mu2 = mean[i, first:stop], mean[i, dims + first : dims + stop], mean[i, 2 * dims + first :]
+    out = said[slot]
+    for m in range(len(v)):
+        p, p1, p2 = 1.0 / v[m], 1.0 / v1[m], 1.0 / v2[m]
+        q, q1, q2 = p * mu[m], a * p1 * mu1[m], p2 * mu2[m]
+        out[0, m] = p + c * c * p2
+        out[1, m] = a * a * p1 + b * b * p2
+        out[2, m] = b * c * p2
+        out[3, m] = b * b * p2 - a * a * p1
+        out[4, m] = q + c * q2
+        out[5, m] = b * q2 - q1
+        out[6, m] = b * q2 + q1
 
 
 @njit(fastmath=_SUMS, error_model="numpy")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,7 +31,12 @@ def windows(half: Half = (1, 1)) -> tuple[Floats, Floats]:
     -----
     [H], eqs. 2 and 3. For L2 = 1, eq. 3 is a quarter of the second difference.
     """
-    first, second = checked_half(half)
+    delta, square = _coefficients(*checked_half(half))
+    return delta.copy(), square.copy()
+
+
+@cache
+def _coefficients(first: int, second: int) -> tuple[Floats, Floats]:
     i = np.arange(-first, first + 1, dtype=np.float64)
     delta = i / (i**2).sum()
     i = np.arange(-second, second + 1, dtype=np.float64)
