@@ -48,7 +48,7 @@ $(VENV)/.complete: $(VENV)/.lock pyproject.toml
 	@touch $@
 
 test: setup
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --no-loadscope-reorder
 
 bench: setup
 	@for bench in $(BENCHMARKS); do echo; echo "## $$bench"; $(BIN)/python $$bench || exit 1; done
