@@ -15,7 +15,8 @@ PYTHON ?= $(shell for p in python3.11 python3 python3.12 python3.13; do \
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
-# on all cores, which pip does not; and at all, because where PYTHONDONTWRITEBYTECODE is set, no job would keep it
+# on all cores, which pip does not; and at all, because where PYTHONDONTWRITEBYTECODE is set, no job would keep it;
+# some packages hold files for other Pythons, which cannot be compiled and are not needed
 BYTECODE = { $(BIN)/python -m compileall -q -j 0 -x '/tests?/' $(VENV)/lib src >/dev/null || true; }
 CORES ?= all
 BENCHMARKS ?= $(wildcard benchmarks/bench_*.py)
