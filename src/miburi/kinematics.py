@@ -46,9 +46,8 @@ def forward(motion: Motion) -> tuple[Floats, Floats]:
         A rotation is a quaternion of length zero.
     """
     skeleton = motion.skeleton
-    steps = skeleton.offsets[None]
-    if motion.translations is not None:
-        steps = steps + motion.translations
+    # a sum in both cases: an array that may not be written to would have the kernel compiled once more
+    steps = skeleton.offsets[None] + (0.0 if motion.translations is None else motion.translations)
     positions = np.empty((len(motion), len(skeleton), 3))
     world = np.empty((len(motion), len(skeleton), 3, 3))
     start = motion.root + skeleton.offsets[0]
@@ -84,13 +83,22 @@ def _chain(
             if square == 0.0:
                 return t * len(parents) + j
             s = 2.0 / square
-            local[0, :] = 1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)
-            local[1, :] = s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)
-            local[2, :] = s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)
+            # element by element: assigning whole arrays takes numba six seconds more to compile
+            local[0, 0] = 1 - s * (y * y + z * z)
+            local[0, 1] = s * (x * y - z * w)
+            local[0, 2] = s * (x * z + y * w)
+            local[1, 0] = s * (x * y + z * w)
+            local[1, 1] = 1 - s * (x * x + z * z)
+            local[1, 2] = s * (y * z - x * w)
+            local[2, 0] = s * (x * z - y * w)
+            local[2, 1] = s * (y * z + x * w)
+            local[2, 2] = 1 - s * (x * x + y * y)
             p = parents[j]
             if p < 0:
-                positions[t, j] = start[t]
-                world[t, j] = local
+                for a in range(3):
+                    positions[t, j, a] = start[t, a]
+                    for b in range(3):
+                        world[t, j, a, b] = local[a, b]
                 continue
             for a in range(3):
                 place = positions[t, p, a]

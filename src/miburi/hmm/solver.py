@@ -244,7 +244,8 @@ def log_density(x, mean, variance, step, delta, square):  # type: ignore[no-unty
         i = step[t]
         for w in range(3):
             if w == 0:
-                feature[:] = x[t]
+                for m in range(dims):
+                    feature[m] = x[t, m]
             else:
                 window = delta if w == 1 else square
                 half = len(window) // 2

@@ -74,6 +74,15 @@ def stream(steps: Iterable[Step], delay: int, *, half: Half = (1, 1)) -> Iterato
 
 
 @njit
+def _copy(band, right, i, to_band, to_right, j):  # type: ignore[no-untyped-def]
+    """Row i of one system to row j of another, in loops: numba takes six seconds to compile what assigns arrays."""
+    for m in range(right.shape[1]):
+        to_right[j, m] = right[i, m]
+        for k in range(band.shape[1]):
+            to_band[j, k, m] = band[i, k, m]
+
+
+@njit
 def _push(gaussians, count, delta, square, raw, raw_right, band, right):  # type: ignore[no-untyped-def]
     """Take in the last of the Gaussians, which is frame `count`'s.
 
@@ -82,10 +91,10 @@ def _push(gaussians, count, delta, square, raw, raw_right, band, right):  # type
     """
     width, dims = raw.shape[1] - 1, raw.shape[2]
     for k in range(width):
-        raw[k], raw_right[k] = raw[k + 1], raw_right[k + 1]
+        _copy(raw, raw_right, k + 1, raw, raw_right, k)
     raw[width], raw_right[width] = 0.0, 0.0
     for k in range(len(band) - 1):
-        band[k], right[k] = band[k + 1], right[k + 1]
+        _copy(band, right, k + 1, band, right, k)
     precision, weighted = np.empty(dims), np.empty(dims)
     for w in range(3):
         half = 0 if w == 0 else len(delta if w == 1 else square) // 2
@@ -96,14 +105,15 @@ def _push(gaussians, count, delta, square, raw, raw_right, band, right):  # type
             precision[m] = 1.0 / gaussians[at, 1, w * dims + m]
             weighted[m] = precision[m] * gaussians[at, 0, w * dims + m]
         if w == 0:
-            raw[width, 0] += precision
-            raw_right[width] += weighted
+            for m in range(dims):
+                raw[width, 0, m] += precision[m]
+                raw_right[width, m] += weighted[m]
         else:
             solver.add_row(raw, raw_right, precision, weighted, at, delta if w == 1 else square)
     margin = np.empty(dims)
     for k in range(max(0, width - count), width + 1):
         t = len(band) - 1 - width + k
-        band[t], right[t] = raw[k], raw_right[k]
+        _copy(raw, raw_right, k, band, right, t)
         solver.factor_row(band, right, t, width, margin)
 
 
@@ -114,9 +124,10 @@ def _back(band, right, delay):  # type: ignore[no-untyped-def]
     x = np.empty((delay + 1, right.shape[1]))
     for n in range(delay, -1, -1):
         t = last - delay + n
-        x[n] = right[t] * band[t, 0]
-        for k in range(1, min(width, delay - n) + 1):
-            x[n] -= band[t + k, k] * x[n + k]
+        for m in range(x.shape[1]):
+            x[n, m] = right[t, m] * band[t, 0, m]
+            for k in range(1, min(width, delay - n) + 1):
+                x[n, m] -= band[t + k, k, m] * x[n + k, m]
     return x
 
 

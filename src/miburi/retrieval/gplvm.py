@@ -301,7 +301,8 @@ def _descend(first, points, latent, scale, inverse, along, square, width, starts
                     gap += (points[i, d] - points[at, d]) ** 2
                 if gap <= _APART**2:
                     left[i] = False
-            x[:] = points[at]
+            for d in range(len(x)):
+                x[d] = points[at, d]
             value = _value(x, latent, scale, inverse, along[f], square[f], width, k, both, gradient)
             # hessian: approximate inverse of the second derivatives
             hessian[:] = 0.0

@@ -91,10 +91,20 @@ def _main_axes(x: Floats) -> Floats:
 
 
 @njit
+def _sums(x: Floats) -> tuple[Floats, Floats]:
+    """Sum of frames (D,) and of their outer products (D, D)."""
+    added = np.zeros(x.shape[1])
+    for t in range(len(x)):
+        for d in range(len(added)):  # numba compiles this in no time, a sum along an axis in seconds
+            added[d] += x[t, d]
+    return added, x.T @ x
+
+
+@njit
 def _model(added: Floats, squares: Floats, n: int, noise: float, variance: float) -> tuple[Floats, Floats]:
     """PPCA of n frames by their sum and sum of outer products: variances, ascending, along their axes."""
     mean = added / n
-    values, vectors = np.linalg.eigh(squares / n - np.outer(mean, mean))
+    values, vectors = np.linalg.eigh(squares / n - mean[:, None] * mean)
     values = np.maximum(values, 0.0) + noise
     most = variance * values.sum()
     kept, share = 0, 0.0
@@ -111,8 +121,8 @@ def _model(added: Floats, squares: Floats, n: int, noise: float, variance: float
 @njit
 def _distance(values: Floats, vectors: Floats, mean: Floats, added: Floats, squares: Floats, n: int) -> float:
     """Mean squared Mahalanobis distance of n frames, given as sums, from a model."""
-    shift = np.outer(added / n, mean)
-    along = (squares / n - shift - shift.T + np.outer(mean, mean)) @ vectors
+    shift = (added / n)[:, None] * mean
+    along = (squares / n - shift - shift.T + mean[:, None] * mean) @ vectors
     h = 0.0
     for i in range(len(values)):
         h += (vectors[:, i] * along[:, i]).sum() / values[i]
@@ -130,12 +140,12 @@ def _curve(
     end, count = start + window, 0
     if room == 0:
         return frames, curve, -1
-    added, squares = x[start:end].sum(axis=0), x[start:end].T @ x[start:end]
+    added, squares = _sums(x[start:end])
     valley, peak, where = np.inf, 0.0, -1
     while end + ahead <= len(x):
         values, vectors = _model(added, squares, end - start, _NOISE, variance)
-        seen = x[end : end + ahead]
-        h = _distance(values, vectors, added / (end - start), seen.sum(axis=0), seen.T @ seen, ahead)
+        seen, seen_squares = _sums(x[end : end + ahead])
+        h = _distance(values, vectors, added / (end - start), seen, seen_squares, ahead)
         frames[count], curve[count] = end, h
         count += 1
         if where < 0:
@@ -146,9 +156,8 @@ def _curve(
             where, peak = end, h
         elif end - where >= hold:
             return frames[:count], curve[:count], where
-        new = x[end : end + step]
-        added += new.sum(axis=0)
-        squares += new.T @ new
+        new, new_squares = _sums(x[end : end + step])
+        added, squares = added + new, squares + new_squares
         end += step
     # where the take ends soon, a curve that has turned down has had its peak
     return frames[:count], curve[:count], where if where >= 0 and curve[count - 1] < peak else -1
@@ -203,7 +212,7 @@ def _one_way(
 def _surprise(x: Floats, variance: float) -> float:
     """Twice the negative log-likelihood of frames under their own PPCA, without the constant."""
     n = len(x)
-    added, squares = x.sum(axis=0), x.T @ x
+    added, squares = _sums(x)
     values, vectors = _model(added, squares, n, _ALIKE, variance)
     surprise: float = n * (_distance(values, vectors, added / n, added, squares, n) + np.log(values).sum())
     return surprise
