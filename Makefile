@@ -42,7 +42,7 @@ $(VENV)/.lock: requirements.lock | system
 	@if [ ! -e $@ ]; then rm -rf $(VENV) && $(PYTHON) -m venv $(VENV); fi
 	@if cmp -s $< $@; then touch $@; else \
 		echo "installing requirements.lock into $(VENV): a minute or two"; rm -f $@*; \
-		awk '/^[a-z]/ {n++} {print >> "$@.half" n % 2}' $< && \
+		awk '/^[a-z]/ {n++} {print >> ("$@.half" n % 2)}' $< && \
 		printf '%s\n' $@.half0 $@.half1 | \
 			xargs -P 2 -I half $(PIP) install --no-deps --no-compile --require-hashes -r half && \
 		rm $@.half? && $(BYTECODE) && cp $< $@.part && mv $@.part $@; fi

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from miburi.report import intervals, run
+from miburi.report import bodies, intervals, run
 from miburi.report.pack import Clips, packed_json
 from miburi.report.page import Table, embedded, read_table, render
 
@@ -76,6 +76,13 @@ def test_pictures_become_smaller_not_larger(tmp_path: Path) -> None:
 
 def row(**cells: str) -> dict[str, str]:
     return {"protocol": "1", "keyword": "mean", **cells}
+
+
+def test_takes_that_show_something_go_first() -> None:
+    subjects = {"a1": "a", "a2": "a", "a3": "a", "b1": "b", "b2": "b"}
+    pieces = {"a1": 1, "a2": 9, "a3": 4, "b1": 2, "b2": 7}
+    assert bodies.chosen(subjects, pieces, {}) == ["a2", "b2", "a3", "b1", "a1"]
+    assert bodies.chosen(subjects, pieces, {"a3": 3, "b1": 1}, most=3) == ["a3", "b2", "a2"]
 
 
 def test_dots_lie_on_their_scale() -> None:

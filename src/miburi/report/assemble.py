@@ -103,9 +103,10 @@ class Bodies:
                     if piece[0] in cut:
                         pieces.setdefault(piece[0], []).append(piece)
             subjects = {r["take"]: r["subject"] for r in self._rows(corpus) if r["take"] in pieces}
-            shown = bodies.chosen(subjects)
-            self._read(corpus, set(shown))
             notes = [a for p in of_corpus(self.annotations, corpus) for a in read_annotations(p)]
+            counted = {take: len(found) for take, found in pieces.items()}
+            shown = bodies.chosen(subjects, counted, Counter(a.take for a in notes))
+            self._read(corpus, set(shown))
             for take in shown:
                 if not all(self._add(corpus, p) for p in pieces[take]):
                     continue

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
@@ -27,20 +28,29 @@ def clip_name(corpus: str, segment: Segment) -> str:
     return f"{corpus}/{segment[0]}/{segment[1]}-{segment[2]}"
 
 
-def chosen(takes: Mapping[str, str], most: int = 6) -> list[str]:
-    """Takes that stand for a corpus, of as many subjects as can be.
+def chosen(
+    subjects: Mapping[str, str], pieces: Mapping[str, int], told: Mapping[str, int], most: int = 6
+) -> list[str]:
+    """Takes that stand for a corpus: of as many subjects as can be, and with something to see.
 
     Parameters
     ----------
-    takes
+    subjects
         Take → subject.
+    pieces, told
+        Take → number of pieces it was cut into, and of intervals that people annotated. Takes with bounds that
+        people drew go first, then those with most pieces.
     """
-    turns: dict[str, int] = {}
+
+    def worth(take: str) -> tuple[bool, int, str]:
+        return told.get(take, 0) < 2, -pieces[take], take
+
+    turns: Counter[str] = Counter()
     order = []
-    for take in sorted(takes):
-        turns[takes[take]] = turns.get(takes[take], 0) + 1
-        order.append((turns[takes[take]], take))
-    return [take for _, take in sorted(order)[:most]]
+    for take in sorted(subjects, key=worth):
+        turns[subjects[take]] += 1
+        order.append((turns[subjects[take]], worth(take)))
+    return [take for _, (_, _, take) in sorted(order)[:most]]
 
 
 def segmentation(
