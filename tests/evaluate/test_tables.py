@@ -10,7 +10,7 @@ import pytest
 
 from miburi.errors import InputError
 from miburi.evaluate import printed
-from miburi.evaluate.metrics import compare, of_scores, read_metrics, write_metrics
+from miburi.evaluate.metrics import compare, of_scores, of_segmentation, read_metrics, write_metrics
 from miburi.evaluate.protocols import Score
 from miburi.evaluate.tables import label_counts, table
 
@@ -156,6 +156,16 @@ def test_label_counts_add_up() -> None:
     assert rows["length, exit, exact", ""]["paper"] == 238
     others = label_counts(intervals, lengths, "r rp p", "recorded")
     assert others[-1]["paper"] == ""
+
+
+def test_cuts_are_metrics_where_there_are_bounds() -> None:
+    row = {"take": "all", "method": "PPCA", "cuts": "4", "bounds": "5", "precision": "0.75", "recall": "0.6"}
+    found = of_segmentation("c", [{**row, "take": "one"}, row, {**row, "method": "PCA", "bounds": "0"}])
+    assert {n: (m["value"], m["better"]) for n, m in found.items()} == {
+        "c/segmentation/PPCA/precision": (0.75, "higher"),
+        "c/segmentation/PPCA/recall": (0.6, "higher"),
+    }
+    assert of_segmentation("c", [{**row, "cuts": "0", "precision": "nan"}]) == {}
 
 
 def test_metrics_are_compared(tmp_path: Path) -> None:

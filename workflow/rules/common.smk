@@ -47,14 +47,19 @@ def models_of_string(wildcards):
     return FLOW.models(wildcards.corpus, words)
 
 
+def size(paths):
+    """Megabytes of files. Snakemake's own `size_mb` cannot be asked while a report is made, and warns."""
+    return sum(os.path.getsize(path) for path in paths) / 2**20
+
+
 def megabytes(base, factor=0):
     """Memory of a job: a base and a multiple of its input's size."""
-    return lambda wildcards, input: int(base + factor * input.size_mb)
+    return lambda wildcards, input: int(base + factor * size(input))
 
 
 def minutes(base, per_mb=0.0):
     """Run time of a job: a base and so much for each megabyte of its input."""
-    return lambda wildcards, input: int(base + per_mb * input.size_mb)
+    return lambda wildcards, input: int(base + per_mb * size(input))
 
 
 onerror:

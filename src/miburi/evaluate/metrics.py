@@ -75,6 +75,16 @@ def of_corpus(
     return found
 
 
+def of_segmentation(corpus: str, rows: Sequence[Mapping[str, str]]) -> dict[str, Metric]:
+    """How well all cuts of a corpus agree with its bounds, by each method; rows as `segmentation.write_scores`."""
+    return {
+        f"{corpus}/segmentation/{row['method']}/{measure}": _metric(float(row[measure]), "", "higher")
+        for row in rows
+        if row["take"] == "all" and row["bounds"] != "0" and row["cuts"] != "0"
+        for measure in ("precision", "recall")
+    }
+
+
 def write_metrics(path: str | os.PathLike[str], metrics: Mapping[str, Metric]) -> None:
     """Write metrics as JSON, sorted by name."""
     text = json.dumps({"metrics": dict(sorted(metrics.items()))}, indent=1, ensure_ascii=False)
