@@ -180,11 +180,13 @@ class Flow:
         """Files of cut points of a corpus."""
         return [b["cut_points"] for b in self.bounded(corpus).values() if b["cut_points"]]
 
+    def agreements(self) -> list[str]:
+        """How cuts agree with people's, for each corpus that has any."""
+        return [f"results/{c}/segmentation.csv" for c in self.names("body") if self.bounded(c)]
+
     def segmentations(self) -> list[str]:
-        """Agreement of cuts with people's, for each corpus that has any, and lengths of all segments."""
-        bodies = self.names("body")
-        found = [f"results/{c}/segmentation.csv" for c in bodies if self.bounded(c)]
-        return found + [f"results/{c}/segment_lengths.csv" for c in bodies]
+        """`agreements`, and how long all segments are."""
+        return self.agreements() + [f"results/{c}/segment_lengths.csv" for c in self.names("body")]
 
     def per_take(self, corpus: str, shard: str, key: str) -> dict[str, Any]:
         """A group's setting for each take of a shard where it is not empty."""

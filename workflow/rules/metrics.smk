@@ -13,7 +13,7 @@ rule metrics:
         annotations=FLOW.of_corpora("annotations.tsv"),
         takes=FLOW.of_corpora("takes.csv"),
         indices=FLOW.indices(),
-        segmentations=FLOW.segmentations(),
+        agreements=FLOW.agreements(),
     output:
         report(
             "results/metrics.json",

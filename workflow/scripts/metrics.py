@@ -27,7 +27,7 @@ def main(snakemake):
         seconds = sum(float(t["seconds"]) for t in takes)
         intervals = len(read_annotations(annotated))
         found |= metrics.of_corpus(corpus, len(takes), seconds, segments.get(corpus), intervals)
-    for path in snakemake.input.segmentations:
+    for path in snakemake.input.agreements:
         found |= metrics.of_segmentation(Path(path).parent.name, rows(path))
     metrics.write_metrics(snakemake.output[0], found)
 
