@@ -68,3 +68,22 @@ def test_the_same_bytes_again_rerun_nothing_after(copy: Project) -> None:
     motion = sorted((copy.path / "results" / "everyday" / "motion").glob("*.h5"))[0]
     motion.write_bytes(motion.read_bytes())
     assert planned(copy) == {}
+
+
+HANDED_IN_ALONE = {
+    "accept", "all", "animation", "annotations", "check", "curves_of", "film_take", "gplvm", "index", "left_out",
+    "page", "puppeteers", "search", "search_page", "segment_lengths", "segmentation", "strips_of", "successions",
+    "words",
+}  # fmt: skip
+
+
+def test_the_cluster_profile_groups_rules_that_there_are(finished: Project) -> None:
+    """A new rule is put in a group of profiles/slurm, or named above."""
+    run = finished.snakemake("--list-rules")
+    rules = {line for line in run.terminal.splitlines() if line.isidentifier()}
+    profile = yaml.safe_load((finished.path / "profiles/slurm/config.yaml").read_text())
+    assert set(profile["groups"]) <= rules
+    assert set(profile["group-components"]) <= set(profile["groups"].values())
+    assert {
+        rule for rule in rules - set(profile["groups"]) if not rule.startswith("perform_")
+    } == HANDED_IN_ALONE
