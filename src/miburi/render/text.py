@@ -27,6 +27,7 @@ def write(picture: Picture, words: str, at: tuple[float, float], anchor: str, le
     `anchor` is Pillow's: "lt" means that the words' upper left corner is there. Words that would reach beyond
     the right edge are set smaller.
     """
+    words = words.replace(" ", "  ")  # labels of one letter run together with the typeface's narrow spaces
     room = picture.shape[1] - at[0] if anchor[0] == "l" else 2 * min(at[0], picture.shape[1] - at[0])
     while letters > 6 and _font(letters).getlength(words) > room:
         letters -= 1
