@@ -57,9 +57,10 @@ def test_it_equals_a_sparse_solve(half):
         assert np.allclose(found[:, m], expected, rtol=1e-9, atol=1e-8)
 
 
-@pytest.mark.parametrize(
-    "frames", [1, 2, solver._PART, solver._PART + 1, 2 * solver._PART, 2 * solver._PART + 2]
-)
+KEPT = solver._PART + solver._AHEAD
+
+
+@pytest.mark.parametrize("frames", [1, 2, KEPT, KEPT + 1, KEPT + solver._PART, KEPT + 2 * solver._PART + 1])
 def test_parts_of_a_long_string_join(frames):
     """States of many lengths, more features than are solved side by side, where parts begin and end."""
     rng = np.random.default_rng(frames)
@@ -68,8 +69,26 @@ def test_parts_of_a_long_string_join(frames):
     lasting[-1] -= lasting.sum() - frames
     mean, variance = gaussians(rng, len(lasting), 50)
     step = np.repeat(np.arange(len(lasting)), lasting)
-    expected, _ = solver.wide(mean, variance, step, *windows())
+    expected = solver.wide(mean, variance, step, *windows())
     np.testing.assert_allclose(mlpg(mean, variance, frames=lasting), expected, rtol=1e-9, atol=1e-9)
+
+
+def test_a_frame_may_depend_on_one_far_ahead():
+    """Further than a part of a long string looks: only the first and the last frame are told where to be."""
+    frames = 3 * KEPT
+    mean, variance = np.zeros((frames, 3)), np.ones((frames, 3))
+    variance[1:-1, 0] = np.inf
+    mean[-1, 0] = 1.0
+    _, settled = solver._narrow(
+        *(solver._block(v, 0) for v in (mean, variance)),
+        np.arange(frames),
+        solver._PART,
+        np.empty((frames + 2, 48)),
+    )
+    assert not settled
+    expected = solver.wide(mean, variance, np.arange(frames), *windows())
+    assert np.ptp(expected) > 0.1
+    np.testing.assert_allclose(mlpg(mean, variance), expected, rtol=1e-9, atol=1e-9)
 
 
 def nnmnkwii_windows(half):
@@ -155,7 +174,24 @@ def test_what_generation_refuses(mean, variance, said):
         mlpg(mean, variance)
 
 
-@pytest.mark.parametrize("frames", [1, 2, 3, 10, 500])
+@pytest.mark.parametrize("half", [(1, 1), (2, 1)])
+@pytest.mark.parametrize("frames", [1, 2, 9, 3 * KEPT])
+def test_one_bad_value_is_found(half, frames):
+    """Wherever it is, also where windows reach outside and it would not count."""
+    for frame, column in ((0, 2), (frames // 2, 3), (frames - 1, 5)):
+        for bad in (np.nan, np.inf, -np.inf):
+            mean, variance = gaussians(np.random.default_rng(0), frames, 2)
+            mean[frame, column] = bad
+            with pytest.raises(InputError, match=f"mean, frame {frame}, column {column}"):
+                mlpg(mean, variance, half=half)
+        for bad in (np.nan, -np.inf, -1e-9, 0.0, -0.0):
+            mean, variance = gaussians(np.random.default_rng(0), frames, 2)
+            variance[frame, column] = bad
+            with pytest.raises(InputError, match=f"variance, frame {frame}, column {column}"):
+                mlpg(mean, variance, half=half)
+
+
+@pytest.mark.parametrize("frames", [1, 2, 3, 10, 500, 3 * KEPT])
 def test_deltas_alone_determine_nothing(frames):
     """Without any static variance the level is free, whatever rounding leaves of the pivot."""
     rng = np.random.default_rng(frames)

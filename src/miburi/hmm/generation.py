@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from miburi.errors import InputError
 from miburi.hmm import full, solver
-from miburi.hmm.windows import Floats, Half, checked_frames, windows
+from miburi.hmm.windows import Floats, Half, checked_frames, shaped_frames, windows
 
 _LEAST = 1e-200  # variances below this have no finite precision worth the name
 
@@ -47,21 +47,22 @@ def mlpg(
     half-width (2 max(L1, L2) + 1) M, by Cholesky: O(T M³ L²); rows outside are integrated out.
     """
     # writable, so that the kernels are not compiled once more for arrays that are not
-    mu = np.require(checked_frames(mean, "mlpg: mean"), requirements="W")
+    mu = np.require(shaped_frames(mean, "mlpg: mean"), requirements="W")
     v = np.require(variance, dtype=np.float64, requirements=["C", "W"])
-    _check(mu, v)
+    _check_shapes(mu, v)
     step = steps_of(len(mu), frames)
     if v.ndim == 3:
-        return full.trajectory(mu, v, step, *windows(half))
-    x, margin = solver.trajectory(mu, v, step, *windows(half))
-    found: Floats = x
-    if not (margin.min() > 0.0 and np.isfinite(found.sum())):
-        loose = np.flatnonzero(~(margin > 0.0) | ~np.isfinite(found).all(axis=0))
-        if len(loose):
-            raise InputError(
-                f"mlpg: the Gaussians leave feature {loose[0]} open; are all of its static variances infinite?"
-            )
-    return found
+        return full.trajectory(checked_frames(mu, "mlpg: mean"), v, step, *windows(half))
+    x, sound = solver.trajectory(mu, v, step, *windows(half))
+    # values are looked at only where something is wrong: for many frames that takes as long as the solution
+    if not (sound and np.isfinite(x[0]).all()):
+        checked_frames(mu, "mlpg: mean")
+        _check_variance(v)
+        loose = np.flatnonzero(~np.isfinite(x[0]))
+        raise InputError(
+            f"mlpg: the Gaussians leave feature {loose[0]} open; are all of its static variances infinite?"
+        )
+    return x
 
 
 def log_likelihood(
@@ -79,7 +80,8 @@ def log_likelihood(
     """
     x, mu = checked_frames(trajectory, "trajectory"), checked_frames(mean, "log-likelihood: mean")
     v = np.ascontiguousarray(variance, dtype=np.float64)
-    _check(mu, v)
+    _check_shapes(mu, v)
+    _check_variance(v)
     step = steps_of(len(mu), frames)
     if x.shape != (len(step), mu.shape[1] // 3):
         raise InputError(
@@ -100,13 +102,16 @@ def steps_of(steps: int, frames: ArrayLike | None) -> NDArray[np.int64]:
     return np.repeat(np.arange(steps), lasting)
 
 
-def _check(mu: Floats, v: Floats) -> None:
+def _check_shapes(mu: Floats, v: Floats) -> None:
     if mu.shape[1] % 3:
         raise InputError(
             f"mlpg: mean has {mu.shape[1]} columns, expected 3 M: static, Δ and Δ² of each feature"
         )
     if v.shape not in (mu.shape, (*mu.shape, mu.shape[1])):
         raise InputError(f"mlpg: variance has shape {v.shape}, mean has {mu.shape}")
+
+
+def _check_variance(v: Floats) -> None:
     if v.ndim == 2 and not v.min() >= _LEAST:  # NaN is not, either
         frame, column = (int(i) for i in np.argwhere(~(v >= _LEAST))[0])
         raise InputError(

@@ -8,157 +8,147 @@ features, which lie beside one another.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from miburi.compiled import njit
+from miburi.hmm.windows import Floats
 
 # sums may be taken in another order (vectors), but infinities and signs stay what they are
 _SUMS = {"reassoc", "contract", "nsz"}
 _SINGULAR = 1e-13  # a pivot below this share of its diagonal element is rounding
-_PART = 512  # frames of which L is kept
 _BLOCK = 48  # features that `_narrow` solves side by side: a hand's; known beforehand, so that loops become vectors
+_PART, _AHEAD = 768, 256  # frames that are solved together, and those after them that are known by then
+_SAME = 1e-12  # largest difference, as a share, that frames further ahead may make
 
 
-@njit
-def trajectory(mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
+def trajectory(
+    mean: Floats, variance: Floats, step: NDArray[np.int64], delta: Floats, square: Floats
+) -> tuple[Floats, bool]:
     """Solve for all features; windows delta (2 L1 + 1,) and square (2 L2 + 1,).
 
-    Returns x (T, M) and, per feature, a number that is not positive where the system is singular (M,).
+    Returns x (T, M), NaN where a feature's system is singular, and False if a variance is negative. Whatever else no
+    mean or variance may be (NaN, infinite, 0) leaves the first frame, which depends on all others, not finite, or gives
+    False.
     """
-    if len(delta) == 3 and len(square) == 3:
-        return _narrow(mean, variance, step, delta, square)
-    return wide(mean, variance, step, delta, square)
-
-
-@njit(fastmath=_SUMS, error_model="numpy")
-def _narrow(mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
-    """`wide` for windows of half length 1, a few times faster: a frame's work is one loop.
-
-    L is kept for a part of the frames only. What the next part needs is carried on; all but the last are factored
-    once more, backwards, when their turn comes. So memory is that of x, and L stays in the caches.
-    """
-    frames, dims = len(step), mean.shape[1] // 3
-    x, margin = np.empty((frames, dims)), np.empty(dims)
-    parts = (frames - 1) // _PART + 1
-    lower = np.empty((min(frames, _PART) + 2, 2, _BLOCK))  # L[t, t − 1] and L[t, t − 2]
-    said = np.zeros((4, 7, _BLOCK))  # by three frames that follow one another, and by none
-    # In one array, so that no loop has to ask whether two of them overlap: 1 / D of t − 1 and t − 2, L[t − 1, t − 2], y
-    # of both, margin, y / D; of t, R[t, t], R[t, t − 1], R[t, t − 2] and r[t]; x of t + 1 and t + 2.
-    w = np.empty((13, _BLOCK))
-    kept = np.empty((parts, 5, _BLOCK))
-    for first in range(0, dims, _BLOCK):
-        stop = min(first + _BLOCK, dims)
-        said[:] = 0.0
-        said[:, 0] = 1.0  # what is beyond the last feature is solved too, as 0
-        w[:] = 0.0
-        w[5] = np.inf
-        lower[:] = 0.0
-        for turn in range(2 * parts - 1):
-            part = turn if turn < parts else 2 * parts - 2 - turn
-            keep = turn >= parts - 1
-            start, end = part * _PART, min(frames, (part + 1) * _PART)
-            if turn < parts:
-                kept[part] = w[:5]
-            else:
-                w[:5] = kept[part]
-                lower[_PART:] = lower[:2]
-            now, after, changed = 3, 0, True
-            if start:
-                now = 1
-                _say(said, 1, mean, variance, step[start - 1], first, stop, start == 1, delta, square)
-            edge = start == 0 or start == frames - 1
-            _say(said, 0, mean, variance, step[start], first, stop, edge, delta, square)
-            before = now
-            for t in range(start, end):
-                changed = changed or now != after or before != now
-                before, now, s = now, after, t + 1
-                if s == frames:
-                    after = 3
-                elif s == 1 or s == frames - 1 or step[s] != step[t]:
-                    after = 0
-                    while after in (now, before):
-                        after += 1
-                    _say(said, after, mean, variance, step[s], first, stop, s == frames - 1, delta, square)
-                if changed or now != after or before != now:
-                    for m in range(_BLOCK):
-                        w[7, m] = said[now, 0, m] + said[before, 1, m] + said[after, 1, m]
-                        w[8, m] = said[before, 2, m] + said[now, 2, m]
-                        w[9, m] = said[before, 3, m]
-                        w[10, m] = said[now, 4, m] + said[before, 6, m] + said[after, 5, m]
-                    changed = False
-                i = t - start if keep else 0
-                for m in range(_BLOCK):
-                    beyond = w[9, m]
-                    far = beyond * w[1, m]
-                    beside = w[8, m] - beyond * w[2, m]
-                    near = beside * w[0, m]
-                    pivot = w[7, m] - beyond * far - beside * near
-                    y = w[10, m] - near * w[3, m] - far * w[4, m]
-                    inverse = 1.0 / pivot
-                    w[5, m] = min(w[5, m], pivot - _SINGULAR * w[7, m])
-                    w[1, m] = w[0, m]
-                    w[0, m] = inverse
-                    w[2, m] = near
-                    w[4, m] = w[3, m]
-                    w[3, m] = y
-                    w[6, m] = y * inverse
-                    lower[i, 0, m] = near
-                    lower[i, 1, m] = far
-                if keep:
-                    row = x[t, first:stop]
-                    for m in range(len(row)):
-                        row[m] = w[6, m]
-            if not keep:
-                continue
-            for t in range(end - 1, start - 1, -1):
-                i = t - start
-                row = x[t, first:stop]
-                for m in range(len(row)):
-                    w[6, m] = row[m]
-                for m in range(_BLOCK):
-                    found = w[6, m] - lower[i + 1, 0, m] * w[11, m] - lower[i + 2, 1, m] * w[12, m]
-                    w[12, m] = w[11, m]
-                    w[11, m] = found
-                for m in range(len(row)):
-                    row[m] = w[11, m]
-        for m in range(first, stop):
-            margin[m] = w[5, m - first]
-    return x, margin
-
-
-@njit(fastmath=_SUMS, error_model="numpy")
-def _say(said, slot, mean, variance, i, first, stop, edge, delta, square):  # type: ignore[no-untyped-def]
-    """What a frame s with the Gaussians of step i says of R and r.
-
-    0 of R[s, s], 1 of R[s ± 1, s ± 1], 2 of R[s, s − 1] and R[s + 1, s], 3 of R[s + 1, s − 1], 4 of r[s], 5 of
-    r[s − 1], 6 of r[s + 1]. At an edge the windows of deltas reach outside.
-    """
-    a, b, c = delta[2], square[2], square[1]
-    if edge:
-        a, b, c = 0.0, 0.0, 0.0
     dims = mean.shape[1] // 3
-    # slices, because an index that might be negative keeps loops from becoming vectors
-    v, v1, v2 = (
-        variance[i, first:stop],
-        variance[i, dims + first : dims + stop],
-        variance[i, 2 * dims + first :],
-    )
-    mu, mu1, mu2 = mean[i, first:stop], mean[i, dims + first : dims + stop], mean[i, 2 * dims + first :]
-    out = said[slot]
-    for m in range(len(v)):
-        p, p1, p2 = 1.0 / v[m], 1.0 / v1[m], 1.0 / v2[m]
-        q, q1, q2 = p * mu[m], a * p1 * mu1[m], p2 * mu2[m]
-        out[0, m] = p + c * c * p2
-        out[1, m] = a * a * p1 + b * b * p2
-        out[2, m] = b * c * p2
-        out[3, m] = b * b * p2 - a * a * p1
-        out[4, m] = q + c * q2
-        out[5, m] = b * q2 - q1
-        out[6, m] = b * q2 + q1
+    if len(delta) > 3 or len(square) > 3:
+        sound = bool((variance > 0.0).all() and np.isfinite(mean).all())  # not all of them are read
+        return wide(mean, variance, step, delta, square), sound
+    if dims == _BLOCK:
+        return _solved(mean, variance, step)
+    x, positive = np.empty((len(step), dims)), True
+    for first in range(0, dims, _BLOCK):
+        solved, above = _solved(_block(mean, first), _block(variance, first), step)
+        x[:, first : first + _BLOCK] = solved[:, : dims - first]
+        positive = positive and above
+    return x, positive
+
+
+def _block(values: Floats, first: int) -> Floats:
+    """Columns of a block of features, filled up with ones."""
+    part = values.reshape(len(values), 3, -1)[:, :, first : first + _BLOCK]
+    block = np.empty((len(values), 3, _BLOCK))
+    block[:, :, : part.shape[2]], block[:, :, part.shape[2] :] = part, 1.0
+    return block.reshape(len(values), -1)
+
+
+def _solved(mean: Floats, variance: Floats, step: NDArray[np.int64]) -> tuple[Floats, bool]:
+    """A block of features by parts, or as a whole where frames depend on others further ahead than `_AHEAD`."""
+    x = np.empty((len(step) + 2, _BLOCK))  # numpy's own memory comes in large pages
+    positive, settled = _narrow(mean, variance, step, _PART, x)
+    if not settled:
+        positive, _ = _narrow(mean, variance, step, len(step), x)
+    return x[:-2], positive
+
+
+@njit(fastmath=_SUMS, error_model="numpy")
+def _narrow(mean, variance, step, length, out):  # type: ignore[no-untyped-def]
+    """`wide` for a block of features and windows (−½, 0, ½) and (¼, −½, ¼), many times faster.
+
+    Frames are read, factored and solved forward once. A part of `length` of them and the `_AHEAD` after it are solved
+    backward as if the string ended there. The two frames after the part, on which it hangs, are compared with what is
+    found for them later. So memory is that of x, however long the string.
+
+    Writes x to out (T + 2, M), whose last two rows have no meaning. Returns whether no variance is negative, and
+    whether frames further ahead than `_AHEAD` make no difference: else x is not the answer.
+    """
+    frames, x = len(step), out.reshape(-1)
+    signs, sign = variance.view(np.int64), 0  # the sign of a number is that of its bits
+    # Of frame t at row t − start + 3: L[t, t − 1], L[t + 1, t − 1] and y / D. Nothing is before the first.
+    size = 3 * _BLOCK
+    kept = np.empty((min(frames, length + _AHEAD) + 4) * size)
+    kept[: 3 * size] = 0.0
+    said = np.empty(2 * size)  # 1 / v and μ / v of frame s
+    # Of frame t = s − 1: R[t, t], R[t, t − 1], R[t, t − 2], R[t + 1, t − 1], r[t], 1 / D[t − 1]; of frame s, what it
+    # and those before it say of R[s, s], r[s] and R[s, t] / −2; of it alone, 1 / 4 v1, 1 / 16 v2, its part of r[s + 1].
+    w = np.zeros((12, _BLOCK))
+    w[6] = 1.0  # a frame before the first, which is 0
+    start, before = 0, np.empty(2 * _BLOCK)
+    same = 0  # frames before s that say the same
+    for s in range(frames + 1):
+        i = step[min(s, frames - 1)]
+        same = 0 if s < 2 or s >= frames - 1 or i != step[s - 1] else same + 1
+        if same == 0:
+            mu, v = mean[i], variance[i]
+            for m in range(size):
+                sign |= signs[i, m]
+                said[m] = 1.0 / v[m]
+                said[size + m] = mu[m] * said[m]
+        if same < 3:  # else R and r are as in the row before
+            one = 1.0 if s < frames else 0.0
+            half, quarter, sixteenth = (0.5, 0.25, 0.0625) if 0 < s < frames - 1 else (0.0, 0.0, 0.0)
+            for m in range(_BLOCK):
+                p, p1, p2 = one * said[m], quarter * said[_BLOCK + m], sixteenth * said[2 * _BLOCK + m]
+                q, q1 = one * said[size + m], half * said[size + _BLOCK + m]
+                q2 = quarter * said[size + 2 * _BLOCK + m]
+                w[0, m] = w[6, m] + (p1 + p2)
+                w[1, m] = -2.0 * w[8, m]
+                w[2, m] = w[3, m]
+                w[3, m] = w[10, m] - w[9, m]
+                w[4, m] = w[7, m] + (q2 - q1)
+                w[6, m] = p + 4.0 * p2 + (w[9, m] + w[10, m])
+                w[7, m] = q - 2.0 * q2 + w[11, m]
+                w[8, m] = p2 + w[10, m]
+                w[9, m], w[10, m], w[11, m] = p1, p2, q1 + q2
+        at = (s - start) * size
+        rows = kept[at : at + 3 * size]
+        for m in range(_BLOCK):
+            beyond, far = w[2, m], rows[size + _BLOCK + m]
+            beside = w[1, m] - beyond * rows[size + m]
+            near = beside * w[5, m]
+            pivot = w[0, m] - beside * near - beyond * far
+            y = w[4, m] - beside * rows[size + 2 * _BLOCK + m] - beyond * rows[2 * _BLOCK + m]
+            rows[2 * size + m] = near
+            rows[2 * size + _BLOCK + m] = w[3, m] * w[5, m]
+            w[5, m] = 1.0 / pivot if abs(pivot) > _SINGULAR * abs(w[0, m]) else np.nan
+            rows[2 * size + 2 * _BLOCK + m] = y * w[5, m]
+        if s < frames and s - start < length + _AHEAD:
+            continue
+        kept[at + 3 * size : at + 4 * size] = 0.0
+        x[s * _BLOCK : (s + 2) * _BLOCK] = 0.0
+        for t in range(s - 1, start - 1, -1):
+            at = (t - start + 3) * size
+            rows, found = kept[at : at + 2 * size], x[t * _BLOCK : (t + 3) * _BLOCK]
+            for m in range(_BLOCK):
+                found[m] = (
+                    rows[2 * _BLOCK + m]
+                    - rows[size + m] * found[_BLOCK + m]
+                    - rows[_BLOCK + size + m] * found[2 * _BLOCK + m]
+                )
+        found = x[start * _BLOCK : (start + 3) * _BLOCK]
+        for m in range(2 * _BLOCK if start else 0):
+            if not abs(found[m] - before[m]) <= _SAME * (abs(found[m]) + abs(found[m + _BLOCK])):
+                return True, False
+        if s < frames:
+            start += length
+            before[:] = x[start * _BLOCK : (start + 2) * _BLOCK]
+            kept[: (_AHEAD + 3) * size] = kept[length * size : (length + _AHEAD + 3) * size]
+    return sign >= 0, True
 
 
 @njit(fastmath=_SUMS, error_model="numpy")
 def wide(mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
-    """`trajectory` for windows of any length.
+    """x of `trajectory`, for windows of any length.
 
     band[t, k] holds R[t, t − k], then the factor's L[t, t − k], and 1 / D[t] for k = 0.
     """
@@ -193,7 +183,10 @@ def wide(mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
         for k in range(1, min(width, frames - 1 - t) + 1):
             for m in range(dims):
                 x[t, m] -= band[t + k, k, m] * x[t + k, m]
-    return x, margin
+    for m in range(dims):
+        if not margin[m] > 0.0:
+            x[:, m] = np.nan
+    return x
 
 
 @njit(fastmath=_SUMS, error_model="numpy")

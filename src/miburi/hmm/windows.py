@@ -56,6 +56,19 @@ def checked_half(half: Sequence[int]) -> Half:
 
 def checked_frames(x: ArrayLike, what: str) -> Floats:
     """Frames as a (T, D) array of finite float64 numbers, T and D at least 1, or an InputError."""
+    frames = shaped_frames(x, what)
+    bad = np.flatnonzero(~np.isfinite(frames).all(axis=1))
+    if len(bad):
+        column = int(np.flatnonzero(~np.isfinite(frames[bad[0]]))[0])
+        raise InputError(
+            f"{what}, frame {bad[0]}, column {column}: found {frames[bad[0], column]}, "
+            "expected a finite number"
+        )
+    return frames
+
+
+def shaped_frames(x: ArrayLike, what: str) -> Floats:
+    """`checked_frames`, any numbers."""
     try:
         frames = np.ascontiguousarray(x, dtype=np.float64)
     except (TypeError, ValueError):
@@ -63,13 +76,6 @@ def checked_frames(x: ArrayLike, what: str) -> Floats:
     if frames.ndim != 2 or 0 in frames.shape:
         raise InputError(
             f"{what}: found an array of shape {frames.shape}, expected (T, D) with a frame at least"
-        )
-    bad = np.flatnonzero(~np.isfinite(frames).all(axis=1))
-    if len(bad):
-        column = int(np.flatnonzero(~np.isfinite(frames[bad[0]]))[0])
-        raise InputError(
-            f"{what}, frame {bad[0]}, column {column}: found {frames[bad[0], column]}, "
-            "expected a finite number"
         )
     return frames
 
