@@ -284,20 +284,19 @@ class Index:
         if plain not in ("DSPM(PCA)", "MSM") or k >= len(self):
             return None
         mean, basis = subspace.fit(query, self.dims)
-        histogram = jvh(query)
-        if not basis.any() or not histogram.any():
+        root = np.sqrt(jvh(query)) if with_jvh else np.zeros(0)
+        if not basis.any() or (with_jvh and not root.any()):
             return None
-        factor = nearest.factor_below(self._roots, histogram) if with_jvh else np.ones(len(self))
+        known, factor = self._coarse, nearest.factor_below(self._roots, root)
         if plain == "MSM":
-            least = nearest.msm_below(self._coarse, basis) * factor
-            return nearest.msm_first(
-                least, self._roots if with_jvh else None, histogram, k, self.basis, basis
-            )
+            least = nearest.msm_below(known, basis) * factor
+            return nearest.msm_first(least, self._roots, root, k, self.basis, basis)
         drawn = self._drawn(query)
-        least = nearest.dspm_below(self._coarse, drawn, mean, basis) * factor
-        segments = nearest.Segments(self._roots, self.mean, self.basis, self._blocks, self.offsets)
-        seen = nearest.Query(np.ascontiguousarray(drawn.T), mean, basis, np.sqrt(histogram))
-        return nearest.dspm_first(least, with_jvh, k, segments, seen)
+        segments = nearest.Segments(
+            self._roots, self.mean, self.basis, known.points, self._blocks, self.offsets
+        )
+        seen = nearest.Query(np.ascontiguousarray(drawn.T), nearest.telling(drawn), mean, basis, root)
+        return nearest.dspm_first(nearest.dspm_below(known, mean, basis) * factor, factor, k, segments, seen)
 
     def _subspace_distances(self, query: Floats, measure: str, mean_not_max: bool) -> Floats:
         mean, basis = subspace.fit(query, self.dims)

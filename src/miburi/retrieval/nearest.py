@@ -1,10 +1,11 @@
 """The first k segments, exactly, without looking at every frame of every segment.
 
 A maximum over frames is at least its value at any one frame, and Err (eq. 1) is convex, so it is also at
-least its value at the frames' mean. A few such points per side bound each segment's DSPM from below; a few
-matrix products in float32 give all bounds. Segments are visited from the lowest bound up, until the k-th
-distance found is below all bounds that are left. What is visited is computed as for a whole ranking, so the
-first k are the same bits.
+least its value at the frames' mean. So each segment's DSPM is bounded from below twice: by the segments' means and
+the query's subspace, which is one small product of matrices in float32 for all of them; and, where that leaves a
+doubt, by a few telling points of each side and the other's subspace. Segments are visited from the lowest bound up,
+until the k-th distance found is below all bounds that are left. What is visited is computed as for a whole ranking,
+so the first k are the same bits.
 """
 
 from __future__ import annotations
@@ -22,9 +23,13 @@ from miburi.retrieval.subspace import reduced, residuals, shared
 
 POINTS = 3
 # What rounding in float32 may add to a square, as a share of the largest squared norm (sums of 42 products),
-# and to a coefficient of histograms in float64.
+# and in float64; there also to a coefficient of histograms.
 _ROUNDING = 2e-5
-_ROUNDING_B = 1e-12
+_ROUNDING_64 = 1e-12
+# Of this many times k segments, those of the lowest first bounds, the second bounds are looked at first.
+_OPENING = 4
+# sums may be taken in another order (vectors)
+_SUMS = {"reassoc", "contract", "nsz"}
 
 Singles = NDArray[np.float32]
 
@@ -35,19 +40,15 @@ class Coarse(NamedTuple):
     centre: Floats
     """(D,): subtracted from all frames, so that float32 spends its digits on differences"""
     size: float
-    """largest squared norm of mean and points"""
+    """largest squared norm of a mean"""
     mean: Singles
     """(D, S)"""
     mean_square: Singles
     """(S,)"""
     basis: Singles
     """(D, dims · S)"""
-    mean_along: Singles
-    """(dims, S): each segment's mean along its own basis"""
-    points: Singles
-    """(D, POINTS · S), of each segment's frames"""
-    points_square: Singles
-    """(POINTS · S,)"""
+    points: Floats
+    """(S, POINTS, D), of each segment's frames, float64, not centred"""
 
 
 def telling(frames: Floats) -> Floats:
@@ -63,69 +64,51 @@ def telling(frames: Floats) -> Floats:
 
 def coarse(mean: Floats, basis: Floats, frames: NDArray[np.float32], offsets: NDArray[np.int64]) -> Coarse:
     """Prepare the bounds of an index's segments (arguments as in `Index`)."""
-    spans = pairwise(offsets)
     centre = mean.mean(axis=0)
-    points = np.stack([telling(frames[a:b].astype(np.float64)) for a, b in spans], axis=1) - centre
     near = mean - centre
-    squares, point_squares = np.square(near).sum(axis=1), np.square(points).sum(axis=2)
+    squares = np.square(near).sum(axis=1)
 
     def single(x: Floats) -> Singles:
         return np.ascontiguousarray(x, dtype=np.float32)
 
     return Coarse(
         centre,
-        float(max(squares.max(), point_squares.max())),
+        float(squares.max()),
         single(near.T),
         single(squares),
         single(np.moveaxis(basis, 1, 0).reshape(-1, near.shape[1]).T),
-        single(np.einsum("smd,sd->ms", basis, near)),
-        single(points.reshape(-1, near.shape[1]).T),
-        single(point_squares.ravel()),
+        np.stack([telling(frames[a:b].astype(np.float64)) for a, b in pairwise(offsets)]),
     )
 
 
-def dspm_below(known: Coarse, frames: Floats, mean: Floats, basis: Floats) -> Floats:
-    """Lower bounds of DSPM, (S,), of frames (n, D) drawn from a query with mean (D,) and basis (dims, D)."""
-    dims, s = known.mean_along.shape
-    x = telling(frames) - known.centre
-    q = mean - known.centre
-    size = max(known.size, float(np.square(x).sum(axis=1).max()))
-    x_square = np.square(x).sum(axis=1).astype(np.float32)
-    x32, q32, basis32 = x.astype(np.float32), q.astype(np.float32), basis.astype(np.float32)
-    # the query's points and the segments' subspaces
-    along = (x32 @ known.basis).reshape(POINTS, dims, s) - known.mean_along
-    there = (
-        known.mean_square
-        - 2 * (x32 @ known.mean)
-        + x_square[:, None]
-        - np.einsum("pms,pms->ps", along, along)
-    )
-    # the segments' points and the query's subspace
-    along = basis32 @ known.points - (basis32 @ q32)[:, None]
-    back = known.points_square - 2 * (q32 @ known.points) + q32 @ q32 - np.einsum("ms,ms->s", along, along)
-    square = np.maximum(there.max(axis=0), back.reshape(POINTS, s).max(axis=0)).astype(np.float64)
-    least: Floats = np.sqrt(np.maximum(square - _ROUNDING * size, 0.0))
+def dspm_below(known: Coarse, mean: Floats, basis: Floats) -> Floats:
+    """Lower bounds of DSPM, (S,), of a query with mean (D,) and basis (dims, D): Err of the segments' means."""
+    q = (mean - known.centre).astype(np.float32)
+    basis32 = basis.astype(np.float32)
+    along = basis32 @ known.mean - (basis32 @ q)[:, None]
+    size = float(q @ q)
+    square = known.mean_square - 2 * (q @ known.mean) + size - np.square(along).sum(axis=0)
+    least: Floats = np.sqrt(np.maximum(square - _ROUNDING * max(known.size, size), 0.0), dtype=np.float64)
     return least
 
 
 def msm_below(known: Coarse, basis: Floats) -> Floats:
     """Lower bounds of 1 − Σ cos² / M, (S,), of the query's basis (dims, D)."""
-    dims, s = known.mean_along.shape
-    dots = (basis.astype(np.float32) @ known.basis).reshape(-1, dims, s)
+    dots = (basis.astype(np.float32) @ known.basis).reshape(len(basis), -1, known.mean.shape[1])
     added = np.einsum("bas,bas->s", dots, dots).astype(np.float64)
     least: Floats = np.maximum(1.0 - added / basis.any(axis=1).sum() - _ROUNDING, 0.0)
     return least
 
 
-def factor_below(roots: Floats, histogram: Floats) -> Floats:
-    """Lower bounds of √(1 − B), (S,), of roots (S, D) and the query's histogram (D,), not all zeros."""
-    return np.sqrt(np.maximum(1.0 - roots @ np.sqrt(histogram) - _ROUNDING_B, 0.0))
+def factor_below(roots: Floats, root: Floats) -> Floats:
+    """Lower bounds of √(1 − B), (S,), of roots (S, D) of histograms and the query's (D,), not all zeros; 1 without."""
+    if not len(root):
+        return np.ones(len(roots))
+    return np.sqrt(np.maximum(1.0 - roots @ root - _ROUNDING_64, 0.0))
 
 
-def msm_first(
-    least: Floats, roots: Floats | None, histogram: Floats, k: int, bases: Floats, basis: Floats
-) -> Floats:
-    """MSM (times √(1 − B), if roots are given) of what may be among the first k; infinity elsewhere."""
+def msm_first(least: Floats, roots: Floats, root: Floats, k: int, bases: Floats, basis: Floats) -> Floats:
+    """MSM (times √(1 − B), unless root is empty) of what may be among the first k; infinity elsewhere."""
     rank = basis.any(axis=1).sum()
     out = np.full(len(least), np.inf)
 
@@ -133,9 +116,7 @@ def msm_first(
         distance = np.maximum(
             1.0 - shared(np.ascontiguousarray(np.moveaxis(bases[some], 0, -1)), basis) / rank, 0.0
         )
-        out[some] = (
-            distance if roots is None else distance * np.sqrt(1.0 - overlap(roots[some], np.sqrt(histogram)))
-        )
+        out[some] = distance * np.sqrt(1.0 - overlap(roots[some], root)) if len(root) else distance
 
     add(np.argpartition(least, k - 1)[:k])
     reach = np.partition(out, k - 1)[k - 1]
@@ -144,37 +125,84 @@ def msm_first(
 
 
 class Segments(NamedTuple):
-    """What DSPM needs of the segments, in float64: see `subspace`."""
+    """What DSPM needs of the segments, in float64: see `subspace`; points as in `Coarse`."""
 
     roots: Floats
     mean: Floats
     basis: Floats
+    points: Floats
     blocks: Floats
     offsets: NDArray[np.int64]
 
 
 class Query(NamedTuple):
-    """What DSPM needs of the query: frames (D, n), mean (D,), basis (dims, D), √ of its Jvh (D,)."""
+    """What DSPM needs of the query: frames (D, n), points (POINTS, D), mean (D,), basis (dims, D), and the root of its
+    Jvh (D,), empty where that is not asked for."""
 
     frames: Floats
+    points: Floats
     mean: Floats
     basis: Floats
     root: Floats
 
 
-def dspm_first(least: Floats, with_jvh: bool, k: int, segments: Segments, query: Query) -> Floats:
-    """DSPM (times √(1 − B)) of the segments that may be among the first k, (S,); infinity elsewhere."""
+def dspm_first(least: Floats, factor: Floats, k: int, segments: Segments, query: Query) -> Floats:
+    """DSPM (times √(1 − B), unless the query's root is empty) of what may be among the first k; infinity elsewhere.
+
+    least, factor (S,): lower bounds of the whole, which become closer where they are looked at, and of √(1 − B).
+    """
     out, best = np.full(len(least), np.inf), np.full(k, np.inf)
-    # the k lowest bounds first: their distances already leave few others to look at
-    reach = np.partition(least, k - 1)[k - 1]
-    _visit(np.flatnonzero(least <= reach), least, with_jvh, *segments, *query, out, best)
-    left = np.flatnonzero((least > reach) & (least <= best[-1]))
-    _visit(left[np.argsort(least[left])], least, with_jvh, *segments, *query, out, best)
+    some = min(_OPENING * k, len(least) - 1)
+
+    def visit(todo: NDArray[np.intp]) -> None:
+        _closer(todo, best[-1], factor, *segments[1:4], *query[1:4], least)
+        _visit(todo[np.argsort(least[todo])], least, *segments, *query, out, best)
+
+    opening = np.argpartition(least, some)[:some]
+    rest = np.ones(len(least), dtype=bool)
+    rest[opening] = False
+    visit(opening)
+    visit(np.flatnonzero(rest & (least <= best[-1])))
     return out
 
 
+@njit(fastmath=_SUMS, error_model="numpy")
+def _err(x, mean, basis, gap):  # type: ignore[no-untyped-def]
+    """Err² (eq. 1) of a frame (D,), less what rounding may have added; gap (D,) is scratch."""
+    total = 0.0
+    for d in range(len(gap)):
+        gap[d] = x[d] - mean[d]
+        total += gap[d] * gap[d]
+    left = (1.0 - _ROUNDING_64) * total
+    for m in range(len(basis)):
+        along = 0.0
+        for d in range(len(gap)):
+            along += basis[m, d] * gap[d]
+        left -= along * along
+    return left
+
+
 @njit
-def _visit(todo, least, with_jvh, roots, means, bases, blocks, offsets, frames, mean, basis, root, out, best):  # type: ignore[no-untyped-def]
+def _closer(todo, limit, factor, means, bases, points, others, mean, basis, least):  # type: ignore[no-untyped-def]
+    """Raise least[i], i in `todo`, to what the points of segment and query (`others`) say of DSPM, or beyond the limit.
+
+    The segments' means, their first points, are in `least` already.
+    """
+    gap = np.empty(len(mean))
+    for i in todo:
+        square, enough = 0.0, (limit / factor[i]) ** 2 if factor[i] > 0.0 else np.inf
+        for p in range(1, POINTS):
+            square = max(square, _err(points[i, p], mean, basis, gap))
+        for p in range(POINTS):
+            if square <= enough:
+                square = max(square, _err(others[p], means[i], bases[i], gap))
+        least[i] = max(least[i], np.sqrt(square) * factor[i])
+
+
+@njit
+def _visit(  # type: ignore[no-untyped-def]
+    todo, least, roots, means, bases, _points, blocks, offsets, frames, _others, mean, basis, root, out, best
+):
     """Fill out[i] for i in `todo` that can matter, and best, the k smallest distances so far, sorted."""
     width, n = frames.shape
     last = len(best) - 1
@@ -185,7 +213,7 @@ def _visit(todo, least, with_jvh, roots, means, bases, blocks, offsets, frames, 
     for i in todo:
         if least[i] > best[last]:
             continue
-        factor = np.sqrt(1.0 - overlap(roots[i : i + 1], root)[0]) if with_jvh else 1.0
+        factor = np.sqrt(1.0 - overlap(roots[i : i + 1], root)[0]) if len(root) else 1.0
         residuals(frames, means[i], bases[i], total, along)
         there = reduced(total, n, False)
         if there * factor > best[last]:
