@@ -37,14 +37,14 @@ system:
 
 # The copy of the lock is the last thing that is written: a set-up that was cut off begins again from nothing.
 # A changed lock is installed over what is there; a lock that is only newer costs nothing. pip uses one core: two of
-# them install half of the lock each.
+# them install half of the lock each, and build what has to be built apart from what the other is installing.
 $(VENV)/.lock: requirements.lock | system
 	@if [ ! -e $@ ]; then rm -rf $(VENV) && $(PYTHON) -m venv $(VENV); fi
 	@if cmp -s $< $@; then touch $@; else \
 		echo "installing requirements.lock into $(VENV): a minute or two"; rm -f $@*; \
 		awk '/^[a-z]/ {n++} {print >> ("$@.half" n % 2)}' $< && \
 		printf '%s\n' $@.half0 $@.half1 | \
-			xargs -P 2 -I half $(PIP) install --no-deps --no-compile --require-hashes -r half && \
+			xargs -P 2 -I{} $(PIP) install --no-deps --no-compile --use-pep517 --require-hashes -r {} && \
 		rm $@.half? && $(BYTECODE) && cp $< $@.part && mv $@.part $@; fi
 
 $(VENV)/.complete: $(VENV)/.lock pyproject.toml

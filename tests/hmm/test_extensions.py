@@ -130,16 +130,18 @@ def test_a_large_alpha_is_the_papers_answer(models):
         synthesize(models, STRING, alpha=0.0)
 
 
-def test_the_trajectory_of_a_variance_is_the_maximum():
+@pytest.mark.parametrize(("half", "static"), [((1, 1), 1.0), ((2, 2), 300.0)])
+def test_the_trajectory_of_a_variance_is_the_maximum(half, static):
     """Against scipy's climb from several starts, feature by feature."""
     rng = np.random.default_rng(3)
     frames = np.array([3, 4, 2, 5, 4])
     mean, variance = gaussians(rng, 5, 2)
-    step, (delta, square) = steps_of(5, frames), windows()
-    usual = mlpg(mean, variance, frames=frames)
+    variance[:, :2] *= static
+    step, (delta, square) = steps_of(5, frames), windows(half)
+    usual = mlpg(mean, variance, frames=frames, half=half)
     for factor in (0.5, 3.0):
         spread = Spread(factor * usual.var(axis=0), (0.2 * usual.var(axis=0)) ** 2)
-        found = with_spread(mean, variance, step, spread)
+        found = with_spread(mean, variance, step, spread, half)
 
         def fall(c, m, spread=spread):
             both = usual.copy()

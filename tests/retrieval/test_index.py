@@ -289,6 +289,25 @@ def test_bounds_lose_none_of_the_first(seed, k, samples, far):
         np.testing.assert_array_equal(some.score, whole.score[:k])
 
 
+@pytest.mark.parametrize("samples", [2, 20, 50])
+@pytest.mark.parametrize("k", [1, 3, 8])
+def test_frames_that_were_not_drawn_say_nothing(samples, k):
+    """Excursions that few draws meet move the mean of all frames, but not that of those that are compared."""
+    rng = np.random.default_rng(0)
+    x = [rng.normal(size=(500, 42)) * 1e-3 for _ in range(80)]
+    for i, frames in enumerate(x):
+        if i % 2:
+            frames[:, 0] += 0.01
+        else:
+            frames[:5, 7] += 1.5
+    index = Index.build(x, [("a", i, 0, 500) for i in range(80)], samples=samples)
+    query = rng.normal(size=(80, 42)) * 1e-3
+    for measure in SHORT_CUTS:
+        whole, some = index.rank(query, measure), index.rank(query, measure, k)
+        np.testing.assert_array_equal(some.order, whole.order[:k])
+        np.testing.assert_array_equal(some.score, whole.score[:k])
+
+
 # ---- fitting, drawing, ordering
 
 

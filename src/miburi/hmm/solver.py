@@ -18,27 +18,33 @@ _SUMS = {"reassoc", "contract", "nsz"}
 _SINGULAR = 1e-13  # a pivot below this share of its diagonal element is rounding
 _BLOCK = 48  # features that `_narrow` solves side by side: a hand's; known beforehand, so that loops become vectors
 _PART, _AHEAD = 768, 256  # frames that are solved together, and those after them that are known by then
+_WHOLE = 4096  # frames up to which a string is solved as a whole: its factor takes 1.2 KB a frame
 _SAME = 1e-12  # largest difference, as a share, that frames further ahead may make
 
 
 def trajectory(
-    mean: Floats, variance: Floats, step: NDArray[np.int64], delta: Floats, square: Floats
+    mean: Floats,
+    variance: Floats,
+    step: NDArray[np.int64],
+    delta: Floats,
+    square: Floats,
+    definite: bool = True,
 ) -> tuple[Floats, bool]:
     """Solve for all features; windows delta (2 L1 + 1,) and square (2 L2 + 1,).
 
-    Returns x (T, M), NaN where a feature's system is singular, and False if a variance is negative. Whatever else no
-    mean or variance may be (NaN, infinite, 0) leaves the first frame, which depends on all others, not finite, or gives
-    False.
+    Returns x (T, M), NaN where a feature's system is singular (or, unless `definite` is False, not positive definite),
+    and False if a variance is negative. Whatever else no mean or variance may be (NaN, infinite, 0) leaves the first
+    frame, which depends on all others, not finite, or gives False.
     """
     dims = mean.shape[1] // 3
     if len(delta) > 3 or len(square) > 3:
         sound = bool((variance > 0.0).all() and np.isfinite(mean).all())  # not all of them are read
-        return wide(mean, variance, step, delta, square), sound
+        return wide(mean, variance, step, delta, square, definite), sound
     if dims == _BLOCK:
-        return _solved(mean, variance, step)
+        return _solved(mean, variance, step, definite)
     x, positive = np.empty((len(step), dims)), True
     for first in range(0, dims, _BLOCK):
-        solved, above = _solved(_block(mean, first), _block(variance, first), step)
+        solved, above = _solved(_block(mean, first), _block(variance, first), step, definite)
         x[:, first : first + _BLOCK] = solved[:, : dims - first]
         positive = positive and above
     return x, positive
@@ -52,22 +58,24 @@ def _block(values: Floats, first: int) -> Floats:
     return block.reshape(len(values), -1)
 
 
-def _solved(mean: Floats, variance: Floats, step: NDArray[np.int64]) -> tuple[Floats, bool]:
-    """A block of features by parts, or as a whole where frames depend on others further ahead than `_AHEAD`."""
+def _solved(mean: Floats, variance: Floats, step: NDArray[np.int64], definite: bool) -> tuple[Floats, bool]:
+    """A block of features; by parts if it is long, unless frames depend on others further ahead than `_AHEAD`."""
     x = np.empty((len(step) + 2, _BLOCK))  # numpy's own memory comes in large pages
-    positive, settled = _narrow(mean, variance, step, _PART, x)
+    positive, settled = True, False
+    if len(step) > _WHOLE:
+        positive, settled = _narrow(mean, variance, step, definite, _PART, x)
     if not settled:
-        positive, _ = _narrow(mean, variance, step, len(step), x)
+        positive, _ = _narrow(mean, variance, step, definite, len(step), x)
     return x[:-2], positive
 
 
 @njit(fastmath=_SUMS, error_model="numpy")
-def _narrow(mean, variance, step, length, out):  # type: ignore[no-untyped-def]
+def _narrow(mean, variance, step, definite, length, out):  # type: ignore[no-untyped-def]
     """`wide` for a block of features and windows (−½, 0, ½) and (¼, −½, ¼), many times faster.
 
     Frames are read, factored and solved forward once. A part of `length` of them and the `_AHEAD` after it are solved
-    backward as if the string ended there. The two frames after the part, on which it hangs, are compared with what is
-    found for them later. So memory is that of x, however long the string.
+    backward as if all frames after them were 0. The two frames after the part, on which it hangs, are compared with
+    what is found for them later. So memory is that of x, however long the string.
 
     Writes x to out (T + 2, M), whose last two rows have no meaning. Returns whether no variance is negative, and
     whether frames further ahead than `_AHEAD` make no difference: else x is not the answer.
@@ -120,7 +128,8 @@ def _narrow(mean, variance, step, length, out):  # type: ignore[no-untyped-def]
             y = w[4, m] - beside * rows[size + 2 * _BLOCK + m] - beyond * rows[2 * _BLOCK + m]
             rows[2 * size + m] = near
             rows[2 * size + _BLOCK + m] = w[3, m] * w[5, m]
-            w[5, m] = 1.0 / pivot if abs(pivot) > _SINGULAR * abs(w[0, m]) else np.nan
+            least = pivot if definite else abs(pivot)
+            w[5, m] = 1.0 / pivot if least > _SINGULAR * abs(w[0, m]) else np.nan
             rows[2 * size + 2 * _BLOCK + m] = y * w[5, m]
         if s < frames and s - start < length + _AHEAD:
             continue
@@ -137,7 +146,8 @@ def _narrow(mean, variance, step, length, out):  # type: ignore[no-untyped-def]
                 )
         found = x[start * _BLOCK : (start + 3) * _BLOCK]
         for m in range(2 * _BLOCK if start else 0):
-            if not abs(found[m] - before[m]) <= _SAME * (abs(found[m]) + abs(found[m + _BLOCK])):
+            size_here = abs(found[m]) + abs(found[m + _BLOCK])
+            if not (abs(found[m] - before[m]) <= _SAME * size_here and size_here < np.inf):
                 return True, False
         if s < frames:
             start += length
@@ -147,7 +157,7 @@ def _narrow(mean, variance, step, length, out):  # type: ignore[no-untyped-def]
 
 
 @njit(fastmath=_SUMS, error_model="numpy")
-def wide(mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
+def wide(mean, variance, step, delta, square, definite=True):  # type: ignore[no-untyped-def]
     """x of `trajectory`, for windows of any length.
 
     band[t, k] holds R[t, t − k], then the factor's L[t, t − k], and 1 / D[t] for k = 0.
@@ -184,7 +194,7 @@ def wide(mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
             for m in range(dims):
                 x[t, m] -= band[t + k, k, m] * x[t + k, m]
     for m in range(dims):
-        if not margin[m] > 0.0:
+        if definite and not margin[m] > 0.0:
             x[:, m] = np.nan
     return x
 

@@ -144,10 +144,10 @@ def _gap(
     changed = 1.0 / precision
     with np.errstate(all="ignore"):
         # means such that the right sides are r, and 1
-        c, _ = solver.trajectory(mean / variance * changed, changed, step, *window)
+        c, _ = solver.trajectory(mean / variance * changed, changed, step, *window, definite=False)
         ones = np.zeros_like(mean)
         ones[:, :dims] = changed[:, :dims]
-        even, _ = solver.trajectory(ones, changed, step, *window)
+        even, _ = solver.trajectory(ones, changed, step, *window, definite=False)
         share = shift / len(step)
         rest = 1.0 - share * even.sum(axis=0)  # det(R + λ H) / det(R + λ I)
         c = c + even * (share * c.sum(axis=0) / rest)

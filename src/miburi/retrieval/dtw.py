@@ -164,7 +164,9 @@ def _first(todo, rest, short_columns, short, columns, rows, offsets, k):  # type
         limit = best[k - 1]
         if rest[i, 0] > limit:
             continue
-        if asked < 2 * k + 8 * told:  # the second bound costs a third of a distance; asked as long as it pays
+        if (
+            limit < np.inf and asked < 2 * k + 3 * told
+        ):  # it costs a third of a distance: asked as long as it pays
             asked += 1
             if _square(short_columns, short[a:b], rest[i], limit, path, cost) > limit:
                 told += 1

@@ -105,7 +105,7 @@ class Index:
 
     @cached_property
     def _coarse(self) -> nearest.Coarse:
-        return nearest.coarse(self.mean, self.basis, self.frames, self.offsets)
+        return nearest.coarse(self.basis, self.frames, self.offsets)
 
     @cached_property
     def _sequences(self) -> dtw.Sequences:

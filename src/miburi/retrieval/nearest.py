@@ -35,7 +35,10 @@ Singles = NDArray[np.float32]
 
 
 class Coarse(NamedTuple):
-    """What bounds need, in float32, segments on the last axis."""
+    """What bounds need: means and subspaces of the segments, in float32, segments on the last axis.
+
+    Means are of the frames that are compared: the mean of all need not lie in their hull.
+    """
 
     centre: Floats
     """(D,): subtracted from all frames, so that float32 spends its digits on differences"""
@@ -48,7 +51,7 @@ class Coarse(NamedTuple):
     basis: Singles
     """(D, dims · S)"""
     points: Floats
-    """(S, POINTS, D), of each segment's frames, float64, not centred"""
+    """(S, POINTS, D): `telling` of each segment's frames, in float64, nothing subtracted"""
 
 
 def telling(frames: Floats) -> Floats:
@@ -62,10 +65,11 @@ def telling(frames: Floats) -> Floats:
     return np.stack([mean, one, other])
 
 
-def coarse(mean: Floats, basis: Floats, frames: NDArray[np.float32], offsets: NDArray[np.int64]) -> Coarse:
+def coarse(basis: Floats, frames: NDArray[np.float32], offsets: NDArray[np.int64]) -> Coarse:
     """Prepare the bounds of an index's segments (arguments as in `Index`)."""
-    centre = mean.mean(axis=0)
-    near = mean - centre
+    points = np.stack([telling(frames[a:b].astype(np.float64)) for a, b in pairwise(offsets)])
+    centre = points[:, 0].mean(axis=0)
+    near = points[:, 0] - centre
     squares = np.square(near).sum(axis=1)
 
     def single(x: Floats) -> Singles:
@@ -77,7 +81,7 @@ def coarse(mean: Floats, basis: Floats, frames: NDArray[np.float32], offsets: ND
         single(near.T),
         single(squares),
         single(np.moveaxis(basis, 1, 0).reshape(-1, near.shape[1]).T),
-        np.stack([telling(frames[a:b].astype(np.float64)) for a, b in pairwise(offsets)]),
+        points,
     )
 
 
@@ -186,7 +190,7 @@ def _err(x, mean, basis, gap):  # type: ignore[no-untyped-def]
 def _closer(todo, limit, factor, means, bases, points, others, mean, basis, least):  # type: ignore[no-untyped-def]
     """Raise least[i], i in `todo`, to what the points of segment and query (`others`) say of DSPM, or beyond the limit.
 
-    The segments' means, their first points, are in `least` already.
+    The segments' first points, the means, are in `least` already.
     """
     gap = np.empty(len(mean))
     for i in todo:
