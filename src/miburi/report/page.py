@@ -9,7 +9,7 @@ import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -31,7 +31,7 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     head: tuple[tuple[str, ...], ...] = ()
 
-    @property
+    @cached_property
     def numeric(self) -> tuple[bool, ...]:
         """Whether each column holds numbers alone, which stand to the right."""
         return tuple(all(_is_number(row[k]) for row in self.rows) for k in range(len(self.columns)))
