@@ -68,7 +68,8 @@ export function draw(
     const [a, b] = bones[k];
     const thick = Math.max(2 * radii[k] * pixels * (hand ? 1.15 : 1.45), 1.6);
     const tint = shares && !hand ? cividis(shares[limbs[k]] / most) : colour(names[limbs[k]] ?? "trunk");
-    line(context, screen, a, b, thick + 2.4, shares && !hand ? colour("mark") : paper);
+    // an outline, so that limbs pass before one another; around thin bones less, or it would cut a limb at each joint
+    line(context, screen, a, b, thick + Math.min(2.4, 0.4 * thick), shares && !hand ? colour("mark") : paper);
     line(context, screen, a, b, thick, tint);
     // the right side is told apart by more than its colour: a light line along it
     const right = hand ? false : limbs[k] === 2 || limbs[k] === 4;
