@@ -17,6 +17,9 @@ _CONFIG: Any = numba.config
 
 Function = Callable[..., Any]
 
+SUMS = {"reassoc", "contract", "nsz"}
+"""For `fastmath`: sums may be taken in another order (vectors), but infinities and signs stay what they are."""
+
 
 @overload
 def njit(function: Function, /) -> Function: ...

@@ -9,15 +9,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from miburi.compiled import njit
+from miburi.compiled import SUMS, njit
 
-# sums may be taken in another order (vectors), but infinities and signs stay what they are
-_SUMS = {"reassoc", "contract", "nsz"}
 _NEGLIGIBLE = 40.0  # exp(−40) is below the spacing of numbers at 1
 _LOG_ZERO = -746.0  # exp of it is 0
 
 
-@njit(fastmath=_SUMS)
+@njit(fastmath=SUMS)
 def log_densities(x, mean, variance):  # type: ignore[no-untyped-def]
     """Log density of each frame in each state's Gaussian, (T, N): x (T, D), mean and variance (N, D)."""
     frames, dims = x.shape
@@ -39,7 +37,7 @@ def log_densities(x, mean, variance):  # type: ignore[no-untyped-def]
     return out
 
 
-@njit(fastmath=_SUMS)
+@njit(fastmath=SUMS)
 def moments(x, gamma, centre):  # type: ignore[no-untyped-def]
     """Weighted sums of x − centre and its squares: (N, D) each.
 

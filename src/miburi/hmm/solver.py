@@ -10,11 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from miburi.compiled import njit
+from miburi.compiled import SUMS, njit
 from miburi.hmm.windows import Floats
 
-# sums may be taken in another order (vectors), but infinities and signs stay what they are
-_SUMS = {"reassoc", "contract", "nsz"}
 _SINGULAR = 1e-13  # a pivot below this share of its diagonal element is rounding
 _BLOCK = 48  # features that `_narrow` solves side by side: a hand's; known beforehand, so that loops become vectors
 _PART, _AHEAD = 768, 256  # frames that are solved together, and those after them that are known by then
@@ -69,7 +67,7 @@ def _solved(mean: Floats, variance: Floats, step: NDArray[np.int64], definite: b
     return x[:-2], positive
 
 
-@njit(fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=SUMS, error_model="numpy")
 def _narrow(mean, variance, step, definite, length, out):  # type: ignore[no-untyped-def]
     """`wide` for a block of features and windows (−½, 0, ½) and (¼, −½, ¼), many times faster.
 
@@ -156,7 +154,7 @@ def _narrow(mean, variance, step, definite, length, out):  # type: ignore[no-unt
     return sign >= 0, True
 
 
-@njit(fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=SUMS, error_model="numpy")
 def wide(mean, variance, step, delta, square, definite=True):  # type: ignore[no-untyped-def]
     """x of `trajectory`, for windows of any length.
 
@@ -199,7 +197,7 @@ def wide(mean, variance, step, delta, square, definite=True):  # type: ignore[no
     return x
 
 
-@njit(fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=SUMS, error_model="numpy")
 def add_row(band, r, precision, weighted, s, window):  # type: ignore[no-untyped-def]
     """Add to R and r what a window says at frame s."""
     half = len(window) // 2
@@ -217,7 +215,7 @@ def add_row(band, r, precision, weighted, s, window):  # type: ignore[no-untyped
                     band[t, j - i, m] += b * precision[m]
 
 
-@njit(fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=SUMS, error_model="numpy")
 def factor_row(band, y, t, width, margin):  # type: ignore[no-untyped-def]
     """Row t of L and 1 / D, and of the forward substitution."""
     dims = y.shape[1]
@@ -238,7 +236,7 @@ def factor_row(band, y, t, width, margin):  # type: ignore[no-untyped-def]
         band[t, 0, m] = 1.0 / band[t, 0, m]
 
 
-@njit(fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=SUMS, error_model="numpy")
 def log_density(x, mean, variance, step, delta, square):  # type: ignore[no-untyped-def]
     """Log density of a trajectory x (T, M) and of its deltas in the Gaussians of its frames, per feature (M,)."""
     frames, dims = x.shape

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from miburi.compiled import njit
+from miburi.compiled import SUMS, njit
 from miburi.motion import Floats
 from miburi.retrieval.jvh import overlap
 from miburi.retrieval.subspace import reduced, residuals, shared
@@ -28,8 +28,6 @@ _ROUNDING = 2e-5
 _ROUNDING_64 = 1e-12
 # Of this many times k segments, those of the lowest first bounds, the second bounds are looked at first.
 _OPENING = 4
-# sums may be taken in another order (vectors)
-_SUMS = {"reassoc", "contract", "nsz"}
 
 Singles = NDArray[np.float32]
 
@@ -170,7 +168,7 @@ def dspm_first(least: Floats, factor: Floats, k: int, segments: Segments, query:
     return out
 
 
-@njit(fastmath=_SUMS, error_model="numpy")
+@njit(fastmath=SUMS, error_model="numpy")
 def _err(x, mean, basis, gap):  # type: ignore[no-untyped-def]
     """Err² (eq. 1) of a frame (D,), less what rounding may have added; gap (D,) is scratch."""
     total = 0.0
