@@ -202,10 +202,13 @@ class Flow:
         """Whether a string is drawn from the recordings."""
         return self.config.strings[string].random is not None
 
-    def models(self, corpus: str, words: str) -> list[str]:
-        """Models of the labels of a string's words."""
-        labels = dict.fromkeys(label_of(word) for word in words.split())
-        return [f"results/{corpus}/models/{label}.h5" for label in labels]
+    def models(self, corpus: str, string: str) -> list[str]:
+        """Models of the labels of a string that is not drawn at random."""
+        return [f"results/{corpus}/models/{label}.h5" for label in self.labels(string)]
+
+    def training(self, string: str) -> dict[str, Any] | None:
+        """How models are trained, for a string that is drawn at random."""
+        return self.config.train.model_dump() if self.is_random(string) else None
 
     def string(self, string: str) -> dict[str, Any]:
         """Speed, length and what else generation needs to know of a string."""

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from threadpoolctl import threadpool_limits
 
 from miburi import InputError, store
-from miburi.hmm import Model, deltas, kernels, train
+from miburi.hmm import Model, by_label, deltas, global_variance, kernels, train, train_labels
 from miburi.hmm.densities import log_densities, reestimate
 
 from . import naive
@@ -260,6 +260,19 @@ def test_ten_thousand_frames(exits):
     assert np.allclose(model.duration_mean, [2000, 5000, 3000], rtol=1e-9)
     assert np.allclose(model.mean, [[0.0], [1.0], [2.0]], atol=0.1)
     assert np.allclose(model.variance, 1.0, atol=0.15)
+
+
+def test_labels_of_takes_are_trained_on_all_their_intervals():
+    rng = np.random.default_rng(5)
+    takes = [(rng.normal(size=(60, 2)), [(0, 20, "a"), (20, 45, "b"), (45, 60, "a")]) for _ in range(3)]
+    found = train_labels(takes, iter(["b", "a", "b"]), states=2, fps=50.0)
+    assert list(found) == ["b", "a"]
+    reference = global_variance([x for x, _ in takes])
+    alone = train(by_label(takes)["a"], states=2, label="a", fps=50.0, reference=reference)
+    np.testing.assert_array_equal(found["a"].mean, alone.mean)
+    np.testing.assert_array_equal(found["a"].variance, alone.variance)
+    with pytest.raises(InputError, match="no interval has the label 'c'; there are a, b"):
+        train_labels(takes, ["c"])
 
 
 def test_one_frame():

@@ -87,3 +87,9 @@ def test_the_cluster_profile_groups_rules_that_there_are(finished: Project) -> N
     assert {
         rule for rule in rules - set(profile["groups"]) if not rule.startswith("perform_")
     } == HANDED_IN_ALONE
+
+
+def test_no_rule_is_a_checkpoint(finished: Project) -> None:
+    """Where one finishes, Snakemake asks anew what is to do, and loses jobs whose group is half done on a cluster."""
+    for path in (finished.path / "workflow/rules").glob("*.smk"):
+        assert "\ncheckpoint " not in path.read_text(), path.name

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from tests.workflow.conftest import Project
 
-from miburi.hmm import Synthesis
+from miburi.hmm import Model, Synthesis, synthesize
 from miburi.render.film import decode
 
 TABLES = ("table1", "table2", "table3", "table4", "table5", "label_counts")
@@ -63,6 +63,18 @@ def test_spliced_jumps_generated_does_not(finished: Project) -> None:
     generated = float(table["largest jump, generated"]["value"])
     spliced = float(table["largest jump at joins, spliced"]["value"])
     assert generated < 0.5 * spliced
+
+
+def test_a_string_drawn_at_random_is_made_by_the_same_models(copy: Project) -> None:
+    copy.edit("config/test.yaml", "strings:\n", "strings:\n  anything: {corpus: janken, random: 5}\n")
+    run = copy.snakemake("results/janken/synthesis/anything.h5")
+    assert run.status == 0, run.terminal[-2000:]
+    folder = copy.path / "results/janken"
+    words = (folder / "synthesis/anything.txt").read_text().split()
+    assert len(words) == 5
+    found = Synthesis.open(folder / "synthesis/anything.h5")
+    models = {word: Model.open(folder / f"models/{word}.h5") for word in words}
+    np.testing.assert_array_equal(found.trajectory, synthesize(models, " ".join(words)).trajectory)
 
 
 def test_a_search_of_ones_own_log(copy: Project) -> None:

@@ -38,13 +38,14 @@ def code(script):
     return code_digest(str(SCRIPTS / script))
 
 
-def models_of_string(wildcards):
-    """Models of a string's labels; of one that is drawn at random, once it is."""
-    words = CONFIG.strings[wildcards.string].labels
+def trained_or_recorded(wildcards):
+    """Models of a string's labels, or for one that is drawn at random what all models are trained on."""
     if FLOW.is_random(wildcards.string):
-        with checkpoints.words.get(**wildcards).output[0].open() as file:
-            words = file.read()
-    return FLOW.models(wildcards.corpus, words)
+        return {
+            "motion": FLOW.of_shards(wildcards.corpus, "motion"),
+            "annotations": f"results/{wildcards.corpus}/annotations.tsv",
+        }
+    return {"models": FLOW.models(wildcards.corpus, wildcards.string)}
 
 
 def size(paths):

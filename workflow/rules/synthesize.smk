@@ -19,8 +19,7 @@ rule successions:
         "../scripts/successions.py"
 
 
-# a checkpoint, because of a string that is drawn at random nobody knows before which models it needs
-checkpoint words:
+rule words:
     input:
         annotations="results/{corpus}/annotations.tsv",
         successions="results/{corpus}/successions.csv",
@@ -43,8 +42,9 @@ checkpoint words:
 
 rule synthesize:
     input:
+        # which models a string needs that is drawn at random is known only then: it trains them itself
+        unpack(trained_or_recorded),
         words="results/{corpus}/synthesis/{string}.txt",
-        models=models_of_string,
     output:
         "results/{corpus}/synthesis/{string}.h5",
     log:
@@ -57,6 +57,7 @@ rule synthesize:
     params:
         string=lambda wildcards: FLOW.string(wildcards.string),
         seed=CONFIG.seed,
+        training=lambda wildcards: FLOW.training(wildcards.string),
         code=code("synthesize.py"),
     script:
         "../scripts/synthesize.py"

@@ -8,7 +8,7 @@ from miburi.hmm.splicing import Spliced, largest_step, splice, steps
 from miburi.hmm.streaming import DelayError, delay_errors, stream, stream_labels
 from miburi.hmm.synthesis import Synthesis, check_string, hand_motion, lengths, synthesize, total_length
 from miburi.hmm.timing import durations
-from miburi.hmm.training import train
+from miburi.hmm.training import train, train_labels
 from miburi.hmm.windows import by_label, deltas, windows
 
 __all__ = [
@@ -38,5 +38,6 @@ __all__ = [
     "synthesize",
     "total_length",
     "train",
+    "train_labels",
     "windows",
 ]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple, get_args
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,9 +12,9 @@ from miburi.errors import InputError
 from miburi.hmm import kernels
 from miburi.hmm.densities import log_densities, reestimate
 from miburi.hmm.model import Covariance, Form, Model
-from miburi.hmm.sequences import Joined, joined, spread
+from miburi.hmm.sequences import Joined, global_variance, joined, spread
 from miburi.hmm.timing import check_form, duration_moments
-from miburi.hmm.windows import Floats, Half, checked_half
+from miburi.hmm.windows import Floats, Half, by_label, checked_half
 
 SMALLEST = 1e-12
 """No variance is below this, and a feature whose variance is, counts as constant (a dead sensor)."""
@@ -123,6 +123,49 @@ def train(
         constant=int((varies <= SMALLEST).sum()),
         **_interval_moments(data),
     )
+
+
+def train_labels(
+    takes: Sequence[tuple[ArrayLike, Sequence[tuple[int, int, str]]]],
+    labels: Iterable[str],
+    *,
+    half: Half = (1, 1),
+    fps: float | None = None,
+    **settings: Any,
+) -> dict[str, Model]:
+    """The model of each label, trained on all of its intervals in a corpus.
+
+    Parameters
+    ----------
+    takes
+        Frames (T, M) and intervals (start, end exclusive, label) of each take.
+    labels
+        Of which models are wanted; one that comes again is trained once.
+    half, fps
+        As for `train`.
+    **settings
+        Further settings of `train`.
+
+    Returns
+    -------
+    label → model
+        The reference variance is that of all frames of all takes.
+
+    Raises
+    ------
+    InputError
+        No interval has such a label, or what `train` refuses.
+    """
+    half = checked_half(half)
+    intervals = by_label(takes, half)
+    reference = global_variance([x for x, _ in takes], half)
+    models: dict[str, Model] = {}
+    for label in dict.fromkeys(labels):
+        if label not in intervals:
+            raise InputError(f"no interval has the label {label!r}; there are {', '.join(intervals)}")
+        found = intervals[label]
+        models[label] = train(found, label=label, half=half, fps=fps, reference=reference, **settings)
+    return models
 
 
 def _interval_moments(data: Joined) -> dict[str, Floats]:
