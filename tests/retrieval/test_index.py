@@ -266,23 +266,32 @@ def test_a_query_in_the_same_place_is_nearer_to_dspm(features, segments, index):
     assert index.distances(away)[2] > index.distances(x)[2] + 0.5
 
 
-@given(st.integers(0, 10_000), st.integers(1, 12), st.sampled_from([None, 8]), st.sampled_from([0.0, 300.0]))
-def test_bounds_lose_none_of_the_first(seed, k, samples, far):
-    """Clusters of segments at very different distances, short and still ones, some far from the origin."""
+@given(
+    st.integers(0, 10_000),
+    st.integers(1, 12),
+    st.sampled_from([None, 8]),
+    st.sampled_from([0.0, 300.0]),
+    st.sampled_from([4, 6, 31]),
+    st.sampled_from([1.0, 1e22]),
+)
+def test_bounds_lose_none_of_the_first(seed, k, samples, far, width, scale):
+    """Clusters of segments at very different distances, short and still ones, some far from the origin or huge."""
     rng = np.random.default_rng(seed)
-    centres = rng.normal(0, 10.0 ** rng.uniform(-3, 1), (4, 6)) + far
+    centres = rng.normal(0, 10.0 ** rng.uniform(-3, 1), (4, width)) + far
     x, segments, at = [], [], 0
     for _ in range(30):
         n = int(rng.integers(1, 15))
         moves = (
-            rng.normal(0, 10.0 ** rng.uniform(-4, 0), (n, 2)) @ rng.normal(size=(2, 6)) * rng.integers(0, 2)
+            rng.normal(0, 10.0 ** rng.uniform(-4, 0), (n, 2))
+            @ rng.normal(size=(2, width))
+            * rng.integers(0, 2)
         )
-        x.append(centres[rng.integers(4)] + moves + rng.normal(0, 1e-3, (n, 6)) * rng.integers(0, 2))
+        x.append(centres[rng.integers(4)] + moves + rng.normal(0, 1e-3, (n, width)) * rng.integers(0, 2))
         segments.append(("a", 0, at, at + n))
         at += n
-    frames = np.concatenate(x).astype(np.float32)
+    frames = (scale * np.concatenate(x)).astype(np.float32)
     index = Index.build([frames], segments, dims=2, samples=samples)
-    query = x[rng.integers(30)] + rng.normal(0, 0.01, 6)
+    query = scale * (x[rng.integers(30)] + rng.normal(0, 0.01, width))
     for measure in SHORT_CUTS:
         whole, some = index.rank(query, measure), index.rank(query, measure, k)
         np.testing.assert_array_equal(some.order, whole.order[:k])
@@ -339,11 +348,20 @@ def test_ranking_is_a_stable_sort(values, k):
 
 def test_drawn_frames_are_frames_without_repeats_in_order():
     x = np.arange(200.0)[:, None]
-    drawn = _draw(x, 50, "a")[:, 0]
+    drawn = _draw(x, 50, b"a")[:, 0]
     assert len(np.unique(drawn)) == 50
     assert (np.diff(drawn) > 0).all()
-    assert (_draw(x, 50, "b")[:, 0] != drawn).any()
-    np.testing.assert_array_equal(np.unique(_draw(x[:7], 50, "a")), np.arange(7))
+    assert (_draw(x, 50, b"b")[:, 0] != drawn).any()
+    np.testing.assert_array_equal(np.unique(_draw(x[:7], 50, b"a")), np.arange(7))
+
+
+def test_every_frame_is_drawn_equally_often():
+    x = np.arange(60.0)[:, None]
+    times = np.zeros(60)
+    for i in range(3000):
+        times[_draw(x, 20, b"%d" % i)[:, 0].astype(int)] += 1
+    deviation = np.sqrt(3000 * (1 / 3) * (2 / 3))
+    assert np.abs(times - 1000).max() < 4.5 * deviation
 
 
 # ---- building and keeping

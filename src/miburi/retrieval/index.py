@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from miburi import store
+from miburi.compiled import njit
 from miburi.errors import InputError
 from miburi.motion import Floats
 from miburi.retrieval import dtw, latent, nearest, subspace
@@ -28,7 +30,7 @@ def measures() -> tuple[str, ...]:
     return _MEASURES
 
 
-def _draw(x: Floats, samples: int | None, *name: object) -> Floats:
+def _draw(x: Floats, samples: int | None, name: bytes) -> Floats:
     """K frames at random without repeats, in time's order; where there are fewer, all, evenly repeated."""
     n = len(x)
     if samples is None:
@@ -36,7 +38,22 @@ def _draw(x: Floats, samples: int | None, *name: object) -> Floats:
     if n <= samples:
         # copies change no maximum and keep the samples of all segments in one array
         return x[np.arange(samples) * n // samples]
-    return x[np.sort(store.seed(*name).choice(n, samples, replace=False))]
+    return x[_selected(n, samples, zlib.crc32(name))]
+
+
+@njit
+def _selected(n, samples, seed):  # type: ignore[no-untyped-def]
+    """Some of n indices, each set of so many equally likely, ascending (Knuth's algorithm S).
+
+    In compiled code, because a generator of numpy takes longer to make than a whole query needs besides.
+    """
+    np.random.seed(seed)  # noqa: NPY002 (numba has no other that starts as quickly)
+    chosen, count = np.empty(samples, dtype=np.int64), 0
+    for i in range(n):
+        if np.random.random() * (n - i) < samples - count:  # noqa: NPY002
+            chosen[count] = i
+            count += 1
+    return chosen
 
 
 def _checked(x: ArrayLike, width: int | None, what: str) -> Floats:
@@ -94,18 +111,17 @@ class Index:
         return self.models or latent.train(self.frames, self.offsets, latent.Settings())
 
     @cached_property
-    def _blocks(self) -> Floats:
+    def _blocks(self) -> NDArray[np.float32]:
         # values before frames: the kernels' inner loop runs over frames that lie side by side
-        spans = pairwise(self.offsets)
-        return np.concatenate([self.frames[a:b].T.ravel() for a, b in spans]).astype(np.float64)
+        return np.concatenate([self.frames[a:b].T.ravel() for a, b in pairwise(self.offsets)])
 
     @cached_property
     def _roots(self) -> Floats:
         return np.sqrt(self.jvh)
 
     @cached_property
-    def _coarse(self) -> nearest.Coarse:
-        return nearest.coarse(self.basis, self.frames, self.offsets)
+    def _segments(self) -> nearest.Segments:
+        return nearest.segments(self.mean, self.basis, self._roots, self._blocks, self.frames, self.offsets)
 
     @cached_property
     def _sequences(self) -> dtw.Sequences:
@@ -165,7 +181,7 @@ class Index:
             mean.append(m)
             basis.append(b)
             histogram.append(jvh(x))
-            drawn.append(_draw(x, samples, seed, name, start, end).astype(np.float32))
+            drawn.append(_draw(x, samples, f"{seed} {start} {end} {name}".encode()).astype(np.float32))
         return cls(
             tuple(s[0] for s in segments),
             np.array([s[2] for s in segments], dtype=np.int64),
@@ -216,8 +232,12 @@ class Index:
         InputError
             The query is empty, too narrow or wide, or not finite; the measure is unknown; k is less than 1.
         """
-        if k is not None and k >= 1 and (first := self._first(self._query(x), k, measure)) is not None:
-            return ranking(first, k)
+        if k is not None and 1 <= k < len(self):
+            query = self._query(x)
+            if measure == "DTW":
+                return ranking(dtw.first(self._sequences, self._drawn(query), k), k)
+            if (found := self._first(query, k, measure)) is not None:
+                return ranking(found[1], k, found[0])
         return ranking(self.distances(x, measure, reduction=reduction), k)
 
     def distances(self, x: ArrayLike, measure: str = "DSPM(PCA)", *, reduction: str = "max") -> Floats:
@@ -274,29 +294,22 @@ class Index:
 
     def _drawn(self, query: Floats) -> Floats:
         # column sums name the query: they cost nothing and differ between any two recordings
-        return _draw(query, self.samples, self.seed, "query", query.sum(axis=0).tobytes().hex())
+        return _draw(query, self.samples, query.sum(axis=0).tobytes() + b"%d" % self.seed)
 
-    def _first(self, query: Floats, k: int, measure: str) -> Floats | None:
-        """Distances of the first k and ties, infinity for the rest; None: there is no short cut."""
+    def _first(self, query: Floats, k: int, measure: str) -> tuple[NDArray[np.int64], Floats] | None:
+        """Indices and distances of the first k and maybe more; None: there is no short cut."""
         plain, with_jvh = measure.removesuffix("+Jvh"), measure.endswith("+Jvh")
-        if measure == "DTW" and k < len(self):
-            return dtw.first(self._sequences, self._drawn(query), k)
-        if plain not in ("DSPM(PCA)", "MSM") or k >= len(self):
+        if plain not in ("DSPM(PCA)", "MSM"):
             return None
         mean, basis = subspace.fit(query, self.dims)
-        root = np.sqrt(jvh(query)) if with_jvh else np.zeros(0)
+        root = np.sqrt(jvh(query)) if with_jvh else np.zeros(query.shape[1])
         if not basis.any() or (with_jvh and not root.any()):
             return None
-        known, factor = self._coarse, nearest.factor_below(self._roots, root)
-        if plain == "MSM":
-            least = nearest.msm_below(known, basis) * factor
-            return nearest.msm_first(least, self._roots, root, k, self.basis, basis)
-        drawn = self._drawn(query)
-        segments = nearest.Segments(
-            self._roots, self.mean, self.basis, known.points, self._blocks, self.offsets
-        )
-        seen = nearest.Query(np.ascontiguousarray(drawn.T), nearest.telling(drawn), mean, basis, root)
-        return nearest.dspm_first(nearest.dspm_below(known, mean, basis) * factor, factor, k, segments, seen)
+        frames = self._drawn(query) if plain == "DSPM(PCA)" else query[:1]
+        first = nearest.dspm_first if plain == "DSPM(PCA)" else nearest.msm_first
+        seen = nearest.Query(np.ascontiguousarray(frames.T), nearest.telling(frames), mean, basis, root)
+        found: tuple[NDArray[np.int64], Floats] = first(self._segments, seen, k)
+        return found
 
     def _subspace_distances(self, query: Floats, measure: str, mean_not_max: bool) -> Floats:
         mean, basis = subspace.fit(query, self.dims)

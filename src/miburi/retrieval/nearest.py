@@ -2,10 +2,10 @@
 
 A maximum over frames is at least its value at any one frame, and Err (eq. 1) is convex, so it is also at
 least its value at the frames' mean. So each segment's DSPM is bounded from below twice: by the segments' means and
-the query's subspace, which is one small product of matrices in float32 for all of them; and, where that leaves a
-doubt, by a few telling points of each side and the other's subspace. Segments are visited from the lowest bound up,
-until the k-th distance found is below all bounds that are left. What is visited is computed as for a whole ranking,
-so the first k are the same bits.
+the query's subspace, in float32 and for many segments side by side; and, where that leaves a doubt, by a few telling
+points of each side and the other's subspace. The segments of the lowest bounds are visited first, then those
+whose bounds are not above the k-th distance found. What is visited is computed as for a whole ranking, so the first k
+are the same bits.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from miburi.compiled import SUMS, njit
 from miburi.motion import Floats
 from miburi.retrieval.jvh import overlap
-from miburi.retrieval.subspace import reduced, residuals, shared
+from miburi.retrieval.subspace import reduced, residuals, shared_with
 
 POINTS = 3
 # What rounding in float32 may add to a square, as a share of the largest squared norm (sums of 42 products),
@@ -27,119 +27,49 @@ POINTS = 3
 _ROUNDING = 2e-5
 _ROUNDING_64 = 1e-12
 # Of this many times k segments, those of the lowest first bounds, the second bounds are looked at first.
-_OPENING = 4
+_OPENING = 3
+_LANES = 128  # segments that are looked at side by side
+_AXES = 24  # along which subspaces are compared first: on real bodies what is left decides about few
 
 Singles = NDArray[np.float32]
 
 
-class Coarse(NamedTuple):
-    """What bounds need: means and subspaces of the segments, in float32, segments on the last axis.
+class Segments(NamedTuple):
+    """What is compared, in float64 (see `Index`; blocks: `subspace.samples_to_subspace`), and what bounds need.
 
-    Means are of the frames that are compared: the mean of all need not lie in their hull.
+    Bounds need means, subspaces and histograms in float32, segments on the last axis. Their means are of the frames
+    that are compared: the mean of all need not lie in their hull.
     """
 
+    mean: Floats
+    basis: Floats
+    root: Floats
+    """(S, D): square roots of the histograms of movement"""
+    blocks: Singles
+    offsets: NDArray[np.int64]
+    points: Floats
+    """(S · POINTS, D): `telling` of each segment's frames"""
     centre: Floats
     """(D,): subtracted from all frames, so that float32 spends its digits on differences"""
     size: float
     """largest squared norm of a mean"""
-    mean: Singles
+    means: Singles
     """(D, S)"""
-    mean_square: Singles
-    """(S,)"""
-    basis: Singles
-    """(D, dims · S)"""
-    points: Floats
-    """(S, POINTS, D): `telling` of each segment's frames, in float64, nothing subtracted"""
-
-
-def telling(frames: Floats) -> Floats:
-    """Points (POINTS, D) in the hull of frames (n, D) that are likely to be far from a foreign subspace.
-
-    The mean, the frame that is farthest from it, and the frame that is farthest from that one.
-    """
-    mean = frames.mean(axis=0)
-    one = frames[np.square(frames - mean).sum(axis=1).argmax()]
-    other = frames[np.square(frames - one).sum(axis=1).argmax()]
-    return np.stack([mean, one, other])
-
-
-def coarse(basis: Floats, frames: NDArray[np.float32], offsets: NDArray[np.int64]) -> Coarse:
-    """Prepare the bounds of an index's segments (arguments as in `Index`)."""
-    points = np.stack([telling(frames[a:b].astype(np.float64)) for a, b in pairwise(offsets)])
-    centre = points[:, 0].mean(axis=0)
-    near = points[:, 0] - centre
-    squares = np.square(near).sum(axis=1)
-
-    def single(x: Floats) -> Singles:
-        return np.ascontiguousarray(x, dtype=np.float32)
-
-    return Coarse(
-        centre,
-        float(squares.max()),
-        single(near.T),
-        single(squares),
-        single(np.moveaxis(basis, 1, 0).reshape(-1, near.shape[1]).T),
-        points,
-    )
-
-
-def dspm_below(known: Coarse, mean: Floats, basis: Floats) -> Floats:
-    """Lower bounds of DSPM, (S,), of a query with mean (D,) and basis (dims, D): Err of the segments' means."""
-    q = (mean - known.centre).astype(np.float32)
-    basis32 = basis.astype(np.float32)
-    along = basis32 @ known.mean - (basis32 @ q)[:, None]
-    size = float(q @ q)
-    square = known.mean_square - 2 * (q @ known.mean) + size - np.square(along).sum(axis=0)
-    least: Floats = np.sqrt(np.maximum(square - _ROUNDING * max(known.size, size), 0.0), dtype=np.float64)
-    return least
-
-
-def msm_below(known: Coarse, basis: Floats) -> Floats:
-    """Lower bounds of 1 − Σ cos² / M, (S,), of the query's basis (dims, D)."""
-    dots = (basis.astype(np.float32) @ known.basis).reshape(len(basis), -1, known.mean.shape[1])
-    added = np.einsum("bas,bas->s", dots, dots).astype(np.float64)
-    least: Floats = np.maximum(1.0 - added / basis.any(axis=1).sum() - _ROUNDING, 0.0)
-    return least
-
-
-def factor_below(roots: Floats, root: Floats) -> Floats:
-    """Lower bounds of √(1 − B), (S,), of roots (S, D) of histograms and the query's (D,), not all zeros; 1 without."""
-    if not len(root):
-        return np.ones(len(roots))
-    return np.sqrt(np.maximum(1.0 - roots @ root - _ROUNDING_64, 0.0))
-
-
-def msm_first(least: Floats, roots: Floats, root: Floats, k: int, bases: Floats, basis: Floats) -> Floats:
-    """MSM (times √(1 − B), unless root is empty) of what may be among the first k; infinity elsewhere."""
-    rank = basis.any(axis=1).sum()
-    out = np.full(len(least), np.inf)
-
-    def add(some: NDArray[np.intp]) -> None:
-        distance = np.maximum(
-            1.0 - shared(np.ascontiguousarray(np.moveaxis(bases[some], 0, -1)), basis) / rank, 0.0
-        )
-        out[some] = distance * np.sqrt(1.0 - overlap(roots[some], root)) if len(root) else distance
-
-    add(np.argpartition(least, k - 1)[:k])
-    reach = np.partition(out, k - 1)[k - 1]
-    add(np.flatnonzero((least <= reach) & np.isinf(out)))
-    return out
-
-
-class Segments(NamedTuple):
-    """What DSPM needs of the segments, in float64: see `subspace`; points as in `Coarse`."""
-
-    roots: Floats
-    mean: Floats
-    basis: Floats
-    points: Floats
-    blocks: Floats
-    offsets: NDArray[np.int64]
+    squares: Singles
+    """(S,): squared norms of the means"""
+    axes: Floats
+    """(D, _AXES): principal axes of all subspaces"""
+    bases: Singles
+    """(dims, _AXES, S): along these axes"""
+    spilled: Floats
+    """(S,): norm of what is left of a subspace beside the axes"""
+    roots: Singles
+    """(D, S)"""
 
 
 class Query(NamedTuple):
-    """What DSPM needs of the query: frames (D, n), points (POINTS, D), mean (D,), basis (dims, D), and the root of its
-    Jvh (D,), empty where that is not asked for."""
+    """What is compared of the query: frames (D, n), points (POINTS, D), mean (D,), basis (dims, D), and the root of its
+    histogram (D,), zeros where that is not asked for."""
 
     frames: Floats
     points: Floats
@@ -148,86 +78,324 @@ class Query(NamedTuple):
     root: Floats
 
 
-def dspm_first(least: Floats, factor: Floats, k: int, segments: Segments, query: Query) -> Floats:
-    """DSPM (times √(1 − B), unless the query's root is empty) of what may be among the first k; infinity elsewhere.
+@njit
+def telling(frames):  # type: ignore[no-untyped-def]
+    """Points (POINTS, D) in the hull of frames (n, D) that are likely to be far from a foreign subspace.
 
-    least, factor (S,): lower bounds of the whole, which become closer where they are looked at, and of √(1 − B).
+    The mean, the frame that is farthest from it, and the frame that is farthest from that one.
     """
-    out, best = np.full(len(least), np.inf), np.full(k, np.inf)
-    some = min(_OPENING * k, len(least) - 1)
+    n, width = frames.shape
+    points = np.zeros((POINTS, width))
+    for i in range(n):
+        for d in range(width):
+            points[0, d] += frames[i, d]
+    for d in range(width):
+        points[0, d] /= n
+    for p in range(1, POINTS):
+        farthest, most = 0, -1.0
+        for i in range(n):
+            away = 0.0
+            for d in range(width):
+                gap = frames[i, d] - points[p - 1, d]
+                away += gap * gap
+            if away > most:
+                farthest, most = i, away
+        for d in range(width):
+            points[p, d] = frames[farthest, d]
+    return points
 
-    def visit(todo: NDArray[np.intp]) -> None:
-        _closer(todo, best[-1], factor, *segments[1:4], *query[1:4], least)
-        _visit(todo[np.argsort(least[todo])], least, *segments, *query, out, best)
 
-    opening = np.argpartition(least, some)[:some]
-    rest = np.ones(len(least), dtype=bool)
-    rest[opening] = False
-    visit(opening)
-    visit(np.flatnonzero(rest & (least <= best[-1])))
-    return out
+def segments(
+    mean: Floats, basis: Floats, root: Floats, blocks: Singles, frames: Singles, offsets: NDArray[np.int64]
+) -> Segments:
+    """Prepare the segments of an index: arguments as in `Segments` and `Index`."""
+    points = np.concatenate([telling(frames[a:b]) for a, b in pairwise(offsets)])
+    centre = points[::POINTS].mean(axis=0)
+    near = points[::POINTS] - centre
+    squares = np.square(near).sum(axis=1)
+
+    rows = basis.reshape(-1, basis.shape[-1])
+    axes = np.ascontiguousarray(np.linalg.eigh(rows.T @ rows)[1][:, : -_AXES - 1 : -1])
+    along = basis @ axes
+
+    def single(x: Floats) -> Singles:
+        with np.errstate(over="ignore"):  # `_bounds` sees to it
+            return np.ascontiguousarray(x, dtype=np.float32)
+
+    return Segments(
+        mean,
+        basis,
+        root,
+        blocks,
+        offsets,
+        points,
+        centre,
+        float(squares.max()),
+        single(near.T),
+        single(squares),
+        axes,
+        single(np.moveaxis(along, 0, -1)),
+        np.sqrt(np.maximum(np.square(basis).sum(axis=(1, 2)) - np.square(along).sum(axis=(1, 2)), 0.0)),
+        single(root.T),
+    )
+
+
+@njit(fastmath=SUMS)
+def _products(rows, columns, first, n, out):  # type: ignore[no-untyped-def]
+    """out[m, j] = Σ_d rows[m, d] · columns[d, first + j], j < n."""
+    width = len(columns)
+    out[:] = np.float32(0.0)
+    for d in range(0, width - 2, 3):  # three at a time: sums are read and written a third as often
+        x, y, z = columns[d], columns[d + 1], columns[d + 2]
+        one, two, three = x[first : first + n], y[first : first + n], z[first : first + n]
+        for m in range(len(rows)):
+            line, p, q, r = out[m], rows[m, d], rows[m, d + 1], rows[m, d + 2]
+            for j in range(n):
+                line[j] += p * one[j] + q * two[j] + r * three[j]
+    for d in range(width - width % 3, width):
+        one = columns[d, first : first + n]
+        for m in range(len(rows)):
+            line, p = out[m], rows[m, d]
+            for j in range(n):
+                line[j] += p * one[j]
+
+
+@njit(fastmath=SUMS)
+def dspm_below(segments, query):  # type: ignore[no-untyped-def]
+    """Lower bounds of DSPM, (S,): Err of the segments' means from the query's subspace."""
+    width, s = segments.means.shape
+    dims = len(query.basis)
+    # the query's directions, and its mean
+    rows = np.empty((dims + 1, width), dtype=np.float32)
+    own = 0.0
+    for d in range(width):
+        rows[:dims, d] = query.basis[:, d]
+        rows[dims, d] = query.mean[d] - segments.centre[d]
+        own += rows[dims, d] * rows[dims, d]
+    along = np.zeros(dims, dtype=np.float32)
+    for m in range(dims):
+        for d in range(width):
+            along[m] += rows[m, d] * rows[dims, d]
+    less = np.float32(own - _ROUNDING * max(segments.size, own))
+    least, dots = np.empty(s), np.empty((dims + 1, _LANES), dtype=np.float32)
+    for first in range(0, s, _LANES):
+        n = min(_LANES, s - first)
+        _products(rows, segments.means, first, n, dots)
+        for j in range(n):
+            dots[dims, j] = segments.squares[first + j] - np.float32(2.0) * dots[dims, j] + less
+        for m in range(dims):
+            for j in range(n):
+                dots[dims, j] -= (dots[m, j] - along[m]) * (dots[m, j] - along[m])
+        for j in range(n):
+            least[first + j] = np.sqrt(max(dots[dims, j], np.float32(0.0)))
+    return least
+
+
+@njit(fastmath=SUMS)
+def msm_below(segments, query):  # type: ignore[no-untyped-def]
+    """Lower bounds of 1 − Σ cos² / M, (S,).
+
+    √(Σ cos²), the norm of H Qᵀ, is at most its norm along the axes plus the product of the norms of what is left.
+    """
+    s, axes = len(segments.squares), segments.axes
+    rows, rest = np.zeros((len(query.basis), axes.shape[1]), dtype=np.float32), 0.0
+    for m in range(len(rows)):
+        for a in range(axes.shape[1]):
+            along = 0.0
+            for d in range(len(axes)):
+                along += query.basis[m, d] * axes[d, a]
+            rows[m, a] = along
+            rest -= along * along
+    rank = _rank(query.basis)
+    rest = np.sqrt(max(rest + rank, 0.0))
+    least = np.empty(s)
+    added, dots = np.empty(_LANES, dtype=np.float32), np.empty((len(rows), _LANES), dtype=np.float32)
+    for first in range(0, s, _LANES):
+        n = min(_LANES, s - first)
+        added[:] = np.float32(0.0)
+        for a in range(len(segments.bases)):
+            _products(rows, segments.bases[a], first, n, dots)
+            for m in range(len(rows)):
+                for j in range(n):
+                    added[j] += dots[m, j] * dots[m, j]
+        for j in range(n):
+            shared = np.sqrt(added[j]) + rest * segments.spilled[first + j] + _ROUNDING
+            least[first + j] = max(1.0 - shared * shared / rank, 0.0)
+    return least
+
+
+@njit(fastmath=SUMS)
+def factor_below(segments, query):  # type: ignore[no-untyped-def]
+    """Lower bounds of √(1 − B), (S,); ones where the query has no histogram."""
+    s = len(segments.squares)
+    factor = np.ones(s)
+    if query.root.any():
+        rows, dots = query.root.astype(np.float32).reshape(1, -1), np.empty((1, _LANES), dtype=np.float32)
+        for first in range(0, s, _LANES):
+            n = min(_LANES, s - first)
+            _products(rows, segments.roots, first, n, dots)
+            for j in range(n):
+                factor[first + j] = np.sqrt(max(1.0 - dots[0, j] - _ROUNDING, 0.0))
+    return factor
+
+
+@njit
+def _rank(basis):  # type: ignore[no-untyped-def]
+    """How many rows are not zero."""
+    rank = 0
+    for row in basis:
+        rank += row.any()
+    return rank
+
+
+@njit
+def _insert(value, item, values, items):  # type: ignore[no-untyped-def]
+    """Insert into sorted values and their items what is smaller than the last, which falls out."""
+    j = len(values) - 1
+    while j > 0 and values[j - 1] > value:
+        values[j], items[j] = values[j - 1], items[j - 1]
+        j -= 1
+    values[j], items[j] = value, item
+
+
+@njit
+def _lowest(values, k):  # type: ignore[no-untyped-def]
+    """Where the k smallest of values are, smallest first."""
+    least, where = np.full(k, np.inf), np.zeros(k, dtype=np.int64)
+    for i in range(len(values)):
+        if values[i] < least[-1]:
+            _insert(values[i], i, least, where)
+    return where
 
 
 @njit(fastmath=SUMS, error_model="numpy")
-def _err(x, mean, basis, gap):  # type: ignore[no-untyped-def]
-    """Err² (eq. 1) of a frame (D,), less what rounding may have added; gap (D,) is scratch."""
+def _err(points, p, means, bases, i, gap):  # type: ignore[no-untyped-def]
+    """Err² (eq. 1) of points[p] from subspace i, less what rounding may have added; gap (D,) is scratch."""
     total = 0.0
     for d in range(len(gap)):
-        gap[d] = x[d] - mean[d]
+        gap[d] = points[p, d] - means[i, d]
         total += gap[d] * gap[d]
     left = (1.0 - _ROUNDING_64) * total
-    for m in range(len(basis)):
+    for m in range(bases.shape[1]):
         along = 0.0
         for d in range(len(gap)):
-            along += basis[m, d] * gap[d]
+            along += bases[i, m, d] * gap[d]
         left -= along * along
     return left
 
 
 @njit
-def _closer(todo, limit, factor, means, bases, points, others, mean, basis, least):  # type: ignore[no-untyped-def]
-    """Raise least[i], i in `todo`, to what the points of segment and query (`others`) say of DSPM, or beyond the limit.
+def _closer(i, limit, points, means, bases, others, mean, basis, gap):  # type: ignore[no-untyped-def]
+    """What points say of DSPM's square at least, or something beyond the limit.
 
-    The segments' first points, the means, are in `least` already.
+    points (S · POINTS, D), means (S, D), bases (S, dims, D): of the segments, of which i is looked at (unsigned, so
+    that it cannot count from the end); others (POINTS, D), mean (1, D), basis (1, dims, D): of the query. What the
+    segment's mean says is known.
     """
-    gap = np.empty(len(mean))
-    for i in todo:
-        square, enough = 0.0, (limit / factor[i]) ** 2 if factor[i] > 0.0 else np.inf
-        for p in range(1, POINTS):
-            square = max(square, _err(points[i, p], mean, basis, gap))
-        for p in range(POINTS):
-            if square <= enough:
-                square = max(square, _err(others[p], means[i], bases[i], gap))
-        least[i] = max(least[i], np.sqrt(square) * factor[i])
+    square, none = 0.0, np.uint64(0)
+    # the query's farthest points say most
+    for p in range(POINTS):
+        if square <= limit:
+            square = max(square, _err(others, np.uint64(POINTS - 1 - p), means, bases, i, gap))
+    for p in range(1, POINTS):
+        if square <= limit:
+            square = max(square, _err(points, POINTS * i + np.uint64(p), mean, basis, none, gap))
+    return square
 
 
 @njit
-def _visit(  # type: ignore[no-untyped-def]
-    todo, least, roots, means, bases, _points, blocks, offsets, frames, _others, mean, basis, root, out, best
-):
-    """Fill out[i] for i in `todo` that can matter, and best, the k smallest distances so far, sorted."""
-    width, n = frames.shape
-    last = len(best) - 1
-    longest = n
-    for i in todo:
-        longest = max(longest, offsets[i + 1] - offsets[i])
-    total, along = np.empty(longest), np.empty((len(basis), longest))
-    for i in todo:
-        if least[i] > best[last]:
-            continue
-        factor = np.sqrt(1.0 - overlap(roots[i : i + 1], root)[0]) if len(root) else 1.0
-        residuals(frames, means[i], bases[i], total, along)
-        there = reduced(total, n, False)
-        if there * factor > best[last]:
-            continue
-        size = offsets[i + 1] - offsets[i]
-        block = blocks[width * offsets[i] : width * offsets[i + 1]].reshape(width, size)
-        residuals(block, mean, basis, total, along)
-        distance = max(there, reduced(total, size, False)) * factor
-        out[i] = distance
-        if distance < best[last]:
-            j = last
-            while j > 0 and best[j - 1] > distance:
-                best[j] = best[j - 1]
-                j -= 1
-            best[j] = distance
+def _factor(i, segments, query):  # type: ignore[no-untyped-def]
+    """√(1 − B) of segment i; 1 where the query has no histogram."""
+    if not query.root.any():
+        return 1.0
+    return np.sqrt(1.0 - overlap(segments.root[i : i + 1], query.root)[0])
+
+
+@njit
+def _dspm(i, limit, segments, query, scratch):  # type: ignore[no-untyped-def]
+    """Distance of segment i, or infinity if it is beyond the limit."""
+    total, factor = scratch[-1], _factor(i, segments, query)
+    width, n = query.frames.shape
+    residuals(query.frames, segments.mean[i], segments.basis[i], total, scratch)
+    there = reduced(total, n, False)
+    if there * factor > limit:
+        return np.inf
+    a, b = segments.offsets[i], segments.offsets[i + 1]
+    block = segments.blocks[width * a : width * b].reshape(width, b - a)
+    residuals(block, query.mean, query.basis, total, scratch)
+    return max(there, reduced(total, b - a, False)) * factor
+
+
+@njit
+def _bounds(least, factor):  # type: ignore[no-untyped-def]
+    """Multiply the lower bounds by those of the factor; a number too large for float32 says nothing."""
+    for i in range(len(least)):
+        least[i] = least[i] * factor[i] if least[i] < np.inf else 0.0
+
+
+@njit
+def dspm_first(segments, query, k):  # type: ignore[no-untyped-def]
+    """DSPM (times √(1 − B), if the query has a histogram) of the first k segments and maybe more, and their places."""
+    s = len(segments.squares)
+    longest = query.frames.shape[1]
+    for i in range(s):
+        longest = max(longest, segments.offsets[i + 1] - segments.offsets[i])
+    scratch, gap = np.empty((len(query.basis) + 4, longest)), np.empty(len(query.mean))
+    points, means, bases = segments.points, segments.mean, segments.basis
+    others, mean, basis = (
+        query.points,
+        query.mean.reshape((1, -1)),
+        query.basis.reshape((1, *query.basis.shape)),
+    )
+    least, factor = dspm_below(segments, query), factor_below(segments, query)
+    _bounds(least, factor)
+    found, distance, count = np.empty(s, dtype=np.int64), np.empty(s), 0
+    best, places = np.full(k, np.inf), np.zeros(k, dtype=np.int64)
+    first = _lowest(least, min(_OPENING * k, s))
+    closer = np.empty(len(first))
+    for j in range(len(first)):
+        i = first[j]
+        square = _closer(np.uint64(i), np.inf, points, means, bases, others, mean, basis, gap)
+        closer[j] = max(least[i], np.sqrt(square) * factor[i])
+        least[i] = np.inf  # it is not looked at again
+    order = _lowest(closer, len(first))
+    for j in range(len(first) + s):
+        if j < len(first):
+            i, below = first[order[j]], closer[order[j]]
+        else:
+            i = j - len(first)
+            below = least[i]
+            if below <= best[-1] and factor[i] > 0.0:
+                limit = (best[-1] / factor[i]) ** 2
+                square = _closer(np.uint64(i), limit, points, means, bases, others, mean, basis, gap)
+                below = max(below, np.sqrt(square) * factor[i])
+        if below <= best[-1] and below < np.inf:
+            exact = _dspm(i, best[-1], segments, query, scratch)
+            if exact < np.inf:
+                found[count], distance[count] = i, exact
+                count += 1
+            if exact < best[-1]:
+                _insert(exact, i, best, places)
+    return found[:count], distance[:count]
+
+
+@njit
+def msm_first(segments, query, k):  # type: ignore[no-untyped-def]
+    """MSM (times √(1 − B), if the query has a histogram) of the first k segments and maybe more, and their places."""
+    s = len(segments.squares)
+    least, factor = msm_below(segments, query), factor_below(segments, query)
+    _bounds(least, factor)
+    found, distance, count = np.empty(s, dtype=np.int64), np.empty(s), 0
+    best, places = np.full(k, np.inf), np.zeros(k, dtype=np.int64)
+    first, rank = _lowest(least, k), _rank(query.basis)
+    for j in range(k + s):
+        i = first[j] if j < k else j - k
+        if least[i] <= best[-1] and least[i] < np.inf:
+            exact = max(1.0 - shared_with(segments.basis[i], query.basis) / rank, 0.0)
+            exact *= _factor(i, segments, query)
+            least[i] = np.inf  # it is not looked at again
+            found[count], distance[count] = i, exact
+            count += 1
+            if exact < best[-1]:
+                _insert(exact, i, best, places)
+    return found[:count], distance[:count]

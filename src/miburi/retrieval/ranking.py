@@ -31,8 +31,17 @@ class Ranking:
         return len(self.order)
 
 
-def ranking(score: ArrayLike, k: int | None = None) -> Ranking:
+def ranking(score: ArrayLike, k: int | None = None, segments: ArrayLike | None = None) -> Ranking:
     """The k smallest of the segments' distances (all, if k is None), equal ones by index.
+
+    Parameters
+    ----------
+    score
+        Distances.
+    k
+        How many to keep.
+    segments
+        Index of the segment of each distance; None: they are those of all segments, in order.
 
     Raises
     ------
@@ -42,6 +51,10 @@ def ranking(score: ArrayLike, k: int | None = None) -> Ranking:
     values = np.asarray(score, dtype=np.float64)
     if k is not None and k < 1:
         raise InputError(f"the first {k} segments are wanted, expected at least 1")
+    if segments is not None:
+        places = np.asarray(segments, dtype=np.int64)
+        order = np.lexsort((places, values))[:k]
+        return Ranking(places[order], values[order])
     if k is None or k >= len(values):
         order = np.argsort(values, kind="stable")
     else:
@@ -66,5 +79,4 @@ def merge(rankings: Sequence[Ranking], sizes: Sequence[int], k: int | None = Non
     shift = np.concatenate([[0], np.cumsum(sizes)])[:-1]
     order = np.concatenate([r.order + s for r, s in zip(rankings, shift, strict=True)])
     score = np.concatenate([r.score for r in rankings])
-    best = np.lexsort((order, score))[: len(order) if k is None else k]
-    return Ranking(order[best].astype(np.int64), score[best])
+    return ranking(score, k, order)
