@@ -307,7 +307,9 @@ class Index:
             return None
         frames = self._drawn(query) if plain == "DSPM(PCA)" else query[:1]
         first = nearest.dspm_first if plain == "DSPM(PCA)" else nearest.msm_first
-        seen = nearest.Query(np.ascontiguousarray(frames.T), nearest.telling(frames), mean, basis, root)
+        seen = nearest.Query(
+            np.ascontiguousarray(frames.T), nearest.telling(frames), mean[None], basis[None], root
+        )
         found: tuple[NDArray[np.int64], Floats] = first(self._segments, seen, k)
         return found
 

@@ -53,10 +53,16 @@ def overlap(roots, root):  # type: ignore[no-untyped-def]
     out = np.empty(len(roots))
     still = not root.any()
     for i in range(len(roots)):
-        added = 0.0
-        for d in range(len(root)):
-            added += roots[i, d] * root[d]
-        out[i] = min(added, 1.0)
+        out[i] = overlap_with(roots, i, root)
         if still:
             out[i] = 0.0 if roots[i].any() else 1.0
     return out
+
+
+@njit
+def overlap_with(roots, i, root):  # type: ignore[no-untyped-def]
+    """`overlap` of segment i with a histogram that is not all zeros."""
+    added = 0.0
+    for d in range(len(root)):
+        added += roots[i, d] * root[d]
+    return min(added, 1.0)

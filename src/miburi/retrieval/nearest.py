@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from miburi.compiled import SUMS, njit
 from miburi.motion import Floats
-from miburi.retrieval.jvh import overlap
+from miburi.retrieval.jvh import overlap_with
 from miburi.retrieval.subspace import reduced, residuals, shared_with
 
 POINTS = 3
@@ -68,8 +68,11 @@ class Segments(NamedTuple):
 
 
 class Query(NamedTuple):
-    """What is compared of the query: frames (D, n), points (POINTS, D), mean (D,), basis (dims, D), and the root of its
-    histogram (D,), zeros where that is not asked for."""
+    """What is compared of the query.
+
+    Frames (D, n), points (POINTS, D), mean (1, D), basis (1, dims, D), and the root of its histogram (D,), all zeros
+    where that is not asked for.
+    """
 
     frames: Floats
     points: Floats
@@ -144,7 +147,9 @@ def segments(
 def _products(rows, columns, first, n, out):  # type: ignore[no-untyped-def]
     """out[m, j] = Σ_d rows[m, d] · columns[d, first + j], j < n."""
     width = len(columns)
-    out[:] = np.float32(0.0)
+    for m in range(len(rows)):
+        for j in range(n):
+            out[m, j] = 0.0
     for d in range(0, width - 2, 3):  # three at a time: sums are read and written a third as often
         x, y, z = columns[d], columns[d + 1], columns[d + 2]
         one, two, three = x[first : first + n], y[first : first + n], z[first : first + n]
@@ -164,17 +169,15 @@ def _products(rows, columns, first, n, out):  # type: ignore[no-untyped-def]
 def dspm_below(segments, query):  # type: ignore[no-untyped-def]
     """Lower bounds of DSPM, (S,): Err of the segments' means from the query's subspace."""
     width, s = segments.means.shape
-    dims = len(query.basis)
+    dims = query.basis.shape[1]
     # the query's directions, and its mean
-    rows = np.empty((dims + 1, width), dtype=np.float32)
-    own = 0.0
-    for d in range(width):
-        rows[:dims, d] = query.basis[:, d]
-        rows[dims, d] = query.mean[d] - segments.centre[d]
-        own += rows[dims, d] * rows[dims, d]
+    rows, own = np.empty((dims + 1, width), dtype=np.float32), 0.0
     along = np.zeros(dims, dtype=np.float32)
-    for m in range(dims):
-        for d in range(width):
+    for d in range(width):
+        rows[dims, d] = query.mean[0, d] - segments.centre[d]
+        own += rows[dims, d] * rows[dims, d]
+        for m in range(dims):
+            rows[m, d] = query.basis[0, m, d]
             along[m] += rows[m, d] * rows[dims, d]
     less = np.float32(own - _ROUNDING * max(segments.size, own))
     least, dots = np.empty(s), np.empty((dims + 1, _LANES), dtype=np.float32)
@@ -197,22 +200,23 @@ def msm_below(segments, query):  # type: ignore[no-untyped-def]
 
     √(Σ cos²), the norm of H Qᵀ, is at most its norm along the axes plus the product of the norms of what is left.
     """
-    s, axes = len(segments.squares), segments.axes
-    rows, rest = np.zeros((len(query.basis), axes.shape[1]), dtype=np.float32), 0.0
+    s, axes, basis = len(segments.squares), segments.axes, query.basis
+    rows, rest = np.zeros((basis.shape[1], axes.shape[1]), dtype=np.float32), 0.0
+    rank = _rank(basis)
     for m in range(len(rows)):
         for a in range(axes.shape[1]):
             along = 0.0
             for d in range(len(axes)):
-                along += query.basis[m, d] * axes[d, a]
+                along += basis[0, m, d] * axes[d, a]
             rows[m, a] = along
             rest -= along * along
-    rank = _rank(query.basis)
     rest = np.sqrt(max(rest + rank, 0.0))
     least = np.empty(s)
     added, dots = np.empty(_LANES, dtype=np.float32), np.empty((len(rows), _LANES), dtype=np.float32)
     for first in range(0, s, _LANES):
         n = min(_LANES, s - first)
-        added[:] = np.float32(0.0)
+        for j in range(n):
+            added[j] = 0.0
         for a in range(len(segments.bases)):
             _products(rows, segments.bases[a], first, n, dots)
             for m in range(len(rows)):
@@ -229,8 +233,10 @@ def factor_below(segments, query):  # type: ignore[no-untyped-def]
     """Lower bounds of √(1 − B), (S,); ones where the query has no histogram."""
     s = len(segments.squares)
     factor = np.ones(s)
-    if query.root.any():
-        rows, dots = query.root.astype(np.float32).reshape(1, -1), np.empty((1, _LANES), dtype=np.float32)
+    if query.root.sum() > 0.0:
+        rows, dots = np.empty((1, len(query.root)), dtype=np.float32), np.empty((1, _LANES), dtype=np.float32)
+        for d in range(len(query.root)):
+            rows[0, d] = query.root[d]
         for first in range(0, s, _LANES):
             n = min(_LANES, s - first)
             _products(rows, segments.roots, first, n, dots)
@@ -241,10 +247,14 @@ def factor_below(segments, query):  # type: ignore[no-untyped-def]
 
 @njit
 def _rank(basis):  # type: ignore[no-untyped-def]
-    """How many rows are not zero."""
+    """How many rows of the query's basis (1, dims, D) are not zero: they come first."""
     rank = 0
-    for row in basis:
-        rank += row.any()
+    for m in range(basis.shape[1]):
+        largest = 0.0
+        for d in range(basis.shape[2]):
+            largest = max(largest, abs(basis[0, m, d]))
+        if largest > 0.0:
+            rank += 1
     return rank
 
 
@@ -304,26 +314,9 @@ def _closer(i, limit, points, means, bases, others, mean, basis, gap):  # type: 
 
 
 @njit
-def _factor(i, segments, query):  # type: ignore[no-untyped-def]
+def _factor(i, root, query):  # type: ignore[no-untyped-def]
     """√(1 − B) of segment i; 1 where the query has no histogram."""
-    if not query.root.any():
-        return 1.0
-    return np.sqrt(1.0 - overlap(segments.root[i : i + 1], query.root)[0])
-
-
-@njit
-def _dspm(i, limit, segments, query, scratch):  # type: ignore[no-untyped-def]
-    """Distance of segment i, or infinity if it is beyond the limit."""
-    total, factor = scratch[-1], _factor(i, segments, query)
-    width, n = query.frames.shape
-    residuals(query.frames, segments.mean[i], segments.basis[i], total, scratch)
-    there = reduced(total, n, False)
-    if there * factor > limit:
-        return np.inf
-    a, b = segments.offsets[i], segments.offsets[i + 1]
-    block = segments.blocks[width * a : width * b].reshape(width, b - a)
-    residuals(block, query.mean, query.basis, total, scratch)
-    return max(there, reduced(total, b - a, False)) * factor
+    return np.sqrt(1.0 - overlap_with(root, i, query)) if query.sum() > 0.0 else 1.0
 
 
 @njit
@@ -337,45 +330,53 @@ def _bounds(least, factor):  # type: ignore[no-untyped-def]
 def dspm_first(segments, query, k):  # type: ignore[no-untyped-def]
     """DSPM (times √(1 − B), if the query has a histogram) of the first k segments and maybe more, and their places."""
     s = len(segments.squares)
-    longest = query.frames.shape[1]
-    for i in range(s):
-        longest = max(longest, segments.offsets[i + 1] - segments.offsets[i])
-    scratch, gap = np.empty((len(query.basis) + 4, longest)), np.empty(len(query.mean))
+    width, n = query.frames.shape
     points, means, bases = segments.points, segments.mean, segments.basis
-    others, mean, basis = (
-        query.points,
-        query.mean.reshape((1, -1)),
-        query.basis.reshape((1, *query.basis.shape)),
-    )
+    others, mean, basis = query.points, query.mean, query.basis
+    blocks, offsets = segments.blocks, segments.offsets
+    longest = n
+    for i in range(s):
+        longest = max(longest, offsets[i + 1] - offsets[i])
+    total, scratch = np.empty(longest), np.empty((basis.shape[1] + 3, longest))
+    gap = np.empty(width)
     least, factor = dspm_below(segments, query), factor_below(segments, query)
     _bounds(least, factor)
     found, distance, count = np.empty(s, dtype=np.int64), np.empty(s), 0
     best, places = np.full(k, np.inf), np.zeros(k, dtype=np.int64)
     first = _lowest(least, min(_OPENING * k, s))
-    closer = np.empty(len(first))
-    for j in range(len(first)):
-        i = first[j]
-        square = _closer(np.uint64(i), np.inf, points, means, bases, others, mean, basis, gap)
-        closer[j] = max(least[i], np.sqrt(square) * factor[i])
-        least[i] = np.inf  # it is not looked at again
-    order = _lowest(closer, len(first))
-    for j in range(len(first) + s):
-        if j < len(first):
-            i, below = first[order[j]], closer[order[j]]
-        else:
-            i = j - len(first)
+    closer, order = np.empty(len(first)), np.arange(0)
+    # those of the lowest first bounds in the order of their second bounds, then all that are left
+    for j in range(2 * len(first) + s):
+        opening = j < len(first)
+        if j == len(first):
+            order = _lowest(closer, len(first))
+        if opening or j >= 2 * len(first):
+            i = first[j] if opening else j - 2 * len(first)
             below = least[i]
             if below <= best[-1] and factor[i] > 0.0:
                 limit = (best[-1] / factor[i]) ** 2
                 square = _closer(np.uint64(i), limit, points, means, bases, others, mean, basis, gap)
                 below = max(below, np.sqrt(square) * factor[i])
-        if below <= best[-1] and below < np.inf:
-            exact = _dspm(i, best[-1], segments, query, scratch)
-            if exact < np.inf:
-                found[count], distance[count] = i, exact
-                count += 1
-            if exact < best[-1]:
-                _insert(exact, i, best, places)
+            if opening:
+                closer[j], least[i] = below, np.inf
+                continue
+        else:
+            i, below = first[order[j - len(first)]], closer[order[j - len(first)]]
+        if below > best[-1] or below == np.inf:
+            continue
+        exact = _factor(i, segments.root, query.root)
+        residuals(query.frames, means[i], bases[i], total, scratch)
+        there = reduced(total, n, False)
+        if there * exact > best[-1]:
+            continue
+        size = offsets[i + 1] - offsets[i]
+        block = blocks[width * offsets[i] : width * offsets[i + 1]].reshape(width, size)
+        residuals(block, mean[0], basis[0], total, scratch)
+        exact *= max(there, reduced(total, size, False))
+        found[count], distance[count] = i, exact
+        count += 1
+        if exact < best[-1]:
+            _insert(exact, i, best, places)
     return found[:count], distance[:count]
 
 
@@ -391,8 +392,8 @@ def msm_first(segments, query, k):  # type: ignore[no-untyped-def]
     for j in range(k + s):
         i = first[j] if j < k else j - k
         if least[i] <= best[-1] and least[i] < np.inf:
-            exact = max(1.0 - shared_with(segments.basis[i], query.basis) / rank, 0.0)
-            exact *= _factor(i, segments, query)
+            exact = max(1.0 - shared_with(segments.basis[i], query.basis[0]) / rank, 0.0)
+            exact *= _factor(i, segments.root, query.root)
             least[i] = np.inf  # it is not looked at again
             found[count], distance[count] = i, exact
             count += 1

@@ -79,7 +79,8 @@ def _reflected(reflectors, tau, directions, dims):  # type: ignore[no-untyped-de
     out = np.empty((dims, width))
     for m in range(dims):
         row = out[m]
-        row[:] = directions[:, dims - 1 - m]
+        for d in range(width):
+            row[d] = directions[d, dims - 1 - m]
         for k in range(width - 2, -1, -1):
             column = reflectors[k + 2 :, k]
             along, rest = row[k + 1], row[k + 2 :]
@@ -113,8 +114,11 @@ def residuals(block, mean, basis, total, scratch):  # type: ignore[no-untyped-de
     """Fill total[:n] with Err² (eq. 1) of the frames in the columns of block (D, n); scratch (≥ dims + 3, ≥ n)."""
     width, n = block.shape
     dims = len(basis)
-    total[:n] = 0.0
-    scratch[:dims, :n] = 0.0
+    for j in range(n):
+        total[j] = 0.0
+    for m in range(dims):
+        for j in range(n):
+            scratch[m, j] = 0.0
     p, q, r = scratch[dims], scratch[dims + 1], scratch[dims + 2]
     d = 0
     while d + 3 <= width:  # three values at a time: sums are read and written a third as often
@@ -223,7 +227,8 @@ def shared_with(one, basis):  # type: ignore[no-untyped-def]
     """`shared` of one segment (dims, D), to the same bits."""
     out, dot = 0.0, np.empty(len(basis))
     for a in range(len(one)):
-        dot[:] = 0.0
+        for b in range(len(basis)):
+            dot[b] = 0.0
         for d in range(one.shape[1]):
             for b in range(len(basis)):  # sums that do not wait for each other
                 dot[b] += one[a, d] * basis[b, d]
