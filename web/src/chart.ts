@@ -30,6 +30,10 @@ export interface Spec {
   digits?: number;
   /** x is counted in whole numbers */
   whole?: boolean;
+  /** first and last x; without it those of the data */
+  range?: [number, number];
+  /** told where the plot begins in its box and how wide it is, in pixels, so that others can stand below it */
+  placed?: (left: number, width: number) => void;
 }
 
 /** A chart in a box; `set` shows other data. */
@@ -81,9 +85,9 @@ export class Chart {
         height: spec.height ?? 240,
         cursor: { drag: { x: false, y: false }, points: { size: 7 } },
         legend: { live: true },
-        scales: { x: { time: false }, y: spec.log ? { distr: 3 } : {} },
+        scales: { x: { time: false, ...(spec.range ? { range: spec.range } : {}) }, y: spec.log ? { distr: 3 } : {} },
         axes: [
-          { ...axis, label: spec.xName, labelSize: 18, ...(spec.whole ? { incrs: [1, 2, 5, 10, 20, 50] } : {}) },
+          { ...axis, label: spec.xName, labelSize: 18, size: 30, ...(spec.whole ? { incrs: [1, 2, 5, 10, 20, 50] } : {}) },
           { ...axis, label: spec.yName, labelSize: 18, size: 52 },
         ],
         bands: (spec.bands ?? []).map((b) => ({
@@ -102,7 +106,7 @@ export class Chart {
             ...(line.steps ? { paths: uPlot.paths.stepped?.({ align: 1 }) } : {}),
           })),
         ],
-        hooks: { drawAxes: [(u) => marks(u, spec)] },
+        hooks: { drawAxes: [(u) => marks(u, spec)], drawClear: [(u) => spec.placed?.(u.over.offsetLeft, u.over.offsetWidth)] },
       },
       data,
       this.box,

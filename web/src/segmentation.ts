@@ -1,7 +1,7 @@
 /** A take's curve H with its cuts, what people called its parts, and the pieces to play. */
 import { Chart } from "./chart";
 import { row } from "./gestures";
-import { button, choice, labelled, Stage } from "./stage";
+import { button, choice, fill, labelled, Stage } from "./stage";
 
 interface Take {
   corpus: string;
@@ -17,7 +17,8 @@ interface Take {
 export function segmentation(root: HTMLElement, takes: Take[]): void {
   const controls = row("controls");
   const select = choice("Take", takes.map((t, k) => [String(k), `${t.take} (${t.corpus})`]), "0", show);
-  controls.append(labelled("take", select));
+  const piece = document.createElement("select");
+  controls.append(labelled("take", select), labelled("piece", piece));
   const box = row("box");
   const lanes = row("lanes");
   const left = row("left");
@@ -36,10 +37,18 @@ export function segmentation(root: HTMLElement, takes: Take[]): void {
       xName: "seconds",
       yName: "H (logarithmic)",
       log: true,
+      range: [0, take.seconds],
+      placed: (start, width) => {
+        lanes.style.marginLeft = `${start}px`;
+        lanes.style.width = `${width}px`;
+      },
     });
+    const names = take.pieces.map(([start, end, , keyword], k) => `${k + 1}: ${span(start, end)}${keyword ? `, ${keyword}` : ""}`);
+    fill(piece, names.map((name, k) => [String(k), name]));
+    piece.onchange = () => play(Number(piece.value));
     const pieces = take.pieces.map(([start, end, clip, keyword], k) => {
       const made = button(keyword || String(k + 1), () => play(k));
-      made.title = `piece ${k + 1}: ${start.toFixed(1)} to ${end.toFixed(1)} s${keyword ? `, ${keyword}` : ""}`;
+      made.title = `piece ${names[k]}`;
       made.dataset.clip = clip;
       made.style.left = `${(100 * start) / take.seconds}%`;
       made.style.width = `${(100 * (end - start)) / take.seconds}%`;
@@ -48,12 +57,13 @@ export function segmentation(root: HTMLElement, takes: Take[]): void {
     function play(k: number): void {
       const [start, end, clip, keyword] = take.pieces[k];
       pieces.forEach((p, i) => p.setAttribute("aria-pressed", String(i === k)));
-      stage.show([{ clip, label: `${take.take}, ${start.toFixed(1)} to ${end.toFixed(1)} s${keyword ? `: ${keyword}` : ""}` }]);
+      piece.value = String(k);
+      stage.show([{ clip, label: `${take.take}, ${span(start, end)}${keyword ? `: ${keyword}` : ""}` }]);
     }
     const human = take.human.map(([start, end, keyword]) => {
       const made = document.createElement("span");
       made.textContent = keyword;
-      made.title = `${keyword}: ${start.toFixed(1)} to ${end.toFixed(1)} s`;
+      made.title = `${keyword}: ${span(start, end)}`;
       made.style.left = `${(100 * start) / take.seconds}%`;
       made.style.width = `${(100 * (end - start)) / take.seconds}%`;
       return made;
@@ -63,6 +73,10 @@ export function segmentation(root: HTMLElement, takes: Take[]): void {
     play(0);
   }
   show();
+}
+
+function span(start: number, end: number): string {
+  return `${start.toFixed(1)} to ${end.toFixed(1)} s`;
 }
 
 function lane(name: string, parts: HTMLElement[]): HTMLElement {

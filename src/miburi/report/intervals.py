@@ -9,14 +9,16 @@ from dataclasses import dataclass
 Row = Mapping[str, str]
 _Marks = tuple[str, float | None, float | None, float | None, float | None, float | None]
 """A measure's name; ours, its interval, the paper's, chance."""
-_LEFT, _RIGHT, _TOP, _STEP = 150.0, 20.0, 24.0, 26.0
-WIDTH = 640.0
-"""Of a plot, in its own units."""
+_TOP, _STEP, _FOOT = 8.0, 26.0, 40.0
+"""Pixels above the first measure, of each, and below the last, where the scale stands."""
 
 
 @dataclass(frozen=True)
 class Dot:
-    """A measure in a plot: where its marks lie across (None: there is none), and the same in words."""
+    """A measure in a plot: how far across its marks lie in percent (None: there is none), and the same in words.
+
+    Only heights are in pixels, so that a plot has the width of its place and its words keep their size.
+    """
 
     name: str
     y: float
@@ -37,6 +39,8 @@ class Plot:
     height: float
     dots: tuple[Dot, ...]
     ticks: tuple[tuple[float, str], ...]
+    top: float = _TOP
+    step: float = _STEP
 
 
 def hits(rows: Sequence[Row]) -> list[Plot]:
@@ -103,7 +107,7 @@ def _plot(
             return None
         at, a, b = (max(value, least), least, most)
         share = math.log(at / a) / math.log(b / a) if log else (at - a) / (b - a)
-        return round(_LEFT + share * (WIDTH - _LEFT - _RIGHT), 1)
+        return round(100 * share, 2)
 
     dots: list[Dot] = []
     for name, ours, low, high, paper, chance in values:
@@ -120,4 +124,4 @@ def _plot(
         marks = (place(ours), place(low), place(high), place(paper), place(chance))
         dots.append(Dot(name, y, *marks, f"{name}: {', '.join(words)}"))
     at = tuple((float(place(t) or 0.0), f"{t:g}") for t in ticks)
-    return Plot(title, scale, _TOP + len(dots) * _STEP + 34.0, tuple(dots), at)
+    return Plot(title, scale, _TOP + len(dots) * _STEP + _FOOT, tuple(dots), at)
