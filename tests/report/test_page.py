@@ -8,10 +8,13 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from tests.evaluate.test_tables import scores
 
+from miburi.evaluate.tables import table
 from miburi.report import bodies, intervals, run
 from miburi.report.pack import Clips, packed_json
 from miburi.report.page import Table, embedded, read_table, render
+from miburi.report.words import COLUMNS, SUFFIXES, columns
 
 HOSTILE = "<img src=x onerror=alert(1)></script><script>alert(2)</script>"
 
@@ -148,6 +151,18 @@ def test_ranks_are_on_a_logarithmic_scale() -> None:
     assert dot.ours == dot.paper
     assert dot.ours - dot.low == pytest.approx(dot.high - dot.ours, abs=0.2)
     assert intervals.ranks([]) == []
+
+
+def test_all_columns_of_rankings_are_explained() -> None:
+    played = [s for measure in ("DTW", "DSPM(PCA)", "mean pose") for s in scores(measure)]
+    for name in ("table1", "table2", "table4", "differences1", "other_people"):
+        (first, *_) = table(name, played)
+        explained = dict(columns(list(first)))
+        for column in set(first) - {"measure"}:
+            assert column.replace("_", " ") in explained or any(
+                column.endswith(end) and f"… {end[1:].replace('_', ' ')}" in explained for end in SUFFIXES
+            ), f"{name}: {column}"
+    assert columns(["label", "value"]) == [("value", COLUMNS["value"])]
 
 
 def test_jobs_are_added_up(tmp_path: Path) -> None:

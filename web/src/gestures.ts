@@ -69,8 +69,8 @@ export async function gestures(root: HTMLElement, all: Gesture[]): Promise<void>
       lines: [
         line("generated", x, "curve"),
         line("state's mean", mean, "soft-ink", { steps: true, width: 1 }),
-        line("+ σ", mean.map((m, t) => m + sd[t]), "band", { steps: true, width: 0 }),
-        line("− σ", mean.map((m, t) => m - sd[t]), "band", { steps: true, width: 0 }),
+        line("mean + σ", mean.map((m, t) => m + sd[t]), "band", { steps: true, width: 0 }),
+        line("mean − σ", mean.map((m, t) => m - sd[t]), "band", { steps: true, width: 0 }),
       ],
       bands: [{ between: [2, 3], colour: "soft-ink" }],
       marks: g.generated.boundaries.slice(0, -1).map((b, k) => ({ at: b / g.fps, words: g.labels[k] })),
@@ -174,8 +174,8 @@ export function models(root: HTMLElement, joints: string[], all: Model[], scale:
       x: states,
       lines: [
         { label: "mean, frames", values: m.duration_mean, colour: "curve", points: true },
-        { label: "+ σ", values: m.duration_mean.map((d, k) => d + m.duration_sd[k]), colour: "band", width: 0 },
-        { label: "− σ", values: m.duration_mean.map((d, k) => Math.max(d - m.duration_sd[k], 0)), colour: "band", width: 0 },
+        { label: "mean + σ", values: m.duration_mean.map((d, k) => d + m.duration_sd[k]), colour: "band", width: 0 },
+        { label: "mean − σ", values: m.duration_mean.map((d, k) => Math.max(d - m.duration_sd[k], 0)), colour: "band", width: 0 },
       ],
       bands: [{ between: [1, 2], colour: "curve" }],
       xName: "state",
@@ -188,6 +188,7 @@ export function models(root: HTMLElement, joints: string[], all: Model[], scale:
       const made = document.createElement("tr");
       made.append(...words.map((w, k) => Object.assign(document.createElement(k ? tag : "th"), { textContent: w })));
       made.cells[0].scope = "row";
+      made.cells[0].className = "key";
       return made;
     };
     head.append(cells("th", ["angle", ...states.map((s) => `state ${s}`)]));

@@ -36,6 +36,11 @@ class Table:
         """Whether each column holds numbers alone, which stand to the right."""
         return tuple(all(_is_number(row[k]) for row in self.rows) for k in range(len(self.columns)))
 
+    @cached_property
+    def key(self) -> int:
+        """The column that says what a row is about, the first of words: it stays in view on a phone."""
+        return self.numeric.index(False) if False in self.numeric else 0
+
     def records(self) -> list[dict[str, str]]:
         """Rows by the names of columns."""
         return [dict(zip(self.columns, row, strict=True)) for row in self.rows]

@@ -13,7 +13,7 @@ from miburi.report import assemble, hands, intervals, run
 from miburi.report.assemble import Bodies, corpus_of, of_corpus
 from miburi.report.pack import Clips
 from miburi.report.page import Table, embedded, read_table, render
-from miburi.report.words import CUTS, FIGURES, TABLES
+from miburi.report.words import CUTS, FIGURES, MEASURES, TABLES, columns
 
 FILMS = 1_100_000
 """Bytes of films that the page carries itself, the smallest first; the others lie beside it."""
@@ -116,6 +116,7 @@ def report(
         more_figures=other,
         hand_tables=_shown(_HAND_TABLES, tables, where),
         model_table=Table(hands.MODEL_COLUMNS, tuple(hands.model_rows(models))),
+        measures=list(MEASURES.items()),
         body_tables=_shown(_BODY_TABLES, tables, where),
         speed_tables=_shown(_SPEED_TABLES, tables, where),
         searches=searches,
@@ -215,6 +216,7 @@ def _shown(
             "words": TABLES.get(name, (name, ""))[1],
             "path": where[name],
             "table": tables[name],
+            "columns": columns(tables[name].columns) if "ranks" in tables[name].columns else [],
             "plots": _PLOTS[name](tables[name].records()) if name in _PLOTS else [],
         }
         for name in names

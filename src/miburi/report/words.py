@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 TABLES = {
     "table1": (
         "Table 1 of [P]: who finds the motion among the first 10",
@@ -74,3 +76,60 @@ FIGURES = {
         "Strips of rendered frames of the changes between the hand's poses.",
     ),
 }
+
+MEASURES = {
+    "SM(PCA)": "subspace method: what the principal components of a segment leave of the query's frames; the worst "
+    "frame counts",
+    "DSPM(PCA)": "the paper's own: as SM, and what the query's components leave of the segment's frames; the larger of "
+    "both",
+    "SM(GP-LVM), DSPM(GP-LVM)": "the same, with a Gaussian process latent variable model in place of the components",
+    "MSM": "mutual subspace method: the angles between the subspaces of query and segment",
+    "DTW": "dynamic time warping: frame against frame, along the path in time that fits best",
+    "mean pose": "distance of the mean poses alone, which is the least that a measure should beat",
+    "… +Jvh": "the measure times the distance of the histograms of how far each joint moves",
+}
+
+COLUMNS = {
+    "protocol": "1: the clip was shown; 2: only the keyword was given; 3: only other people's clips are ranked",
+    "keyword": "what was to be played; “mean” is over all of them",
+    "against": "the measure that this one is compared with",
+    "figure": "what is compared: whether the keyword is among the first 10 or 5 (hit10, hit5), the rank of the shown "
+    "clip (rank) and of the first clip with the keyword (first), precision",
+    "value": "the figure's mean over queries",
+    "value_against": "the same of the measure that it is compared with",
+    "difference": "the former minus the latter",
+    "wilcoxon_p": "p of Wilcoxon's signed-rank test",
+    "paired_queries": "queries that both measures answered",
+    "hit10": "users who have the keyword among the first 10",
+    "hit5": "users who have the keyword among the first 5",
+    "users": "users that there are",
+    "chance10": "hit10 in a random order",
+    "chance5": "hit5 in a random order",
+    "mean_rank": "mean rank of the clip that was shown; 1 is best",
+    "chance_rank": "mean rank in a random order",
+    "precision5": "share of the first 5 that has the keyword",
+    "precision10": "share of the first 10 that has the keyword",
+    "mean_average_precision": "precision at the rank of each segment that has the keyword, averaged",
+    "chance_precision": "share of all segments that has the keyword",
+    "mean_first": "mean rank of the first clip that has the keyword",
+    "chance_first": "mean first in a random order",
+    "seconds": "median seconds per query",
+    "segments": "segments that are ranked",
+    "queries": "who played the queries",
+    "ranks": "the file of rankings that the row was computed from",
+    "note": "why a row is empty",
+}
+
+SUFFIXES = {
+    "_low": "lower end of the 95 % interval",
+    "_high": "upper end of the 95 % interval",
+    "_paper": "as the paper prints it",
+    "_mean_pose": "the same for the mean pose",
+}
+
+
+def columns(names: Sequence[str]) -> list[tuple[str, str]]:
+    """What the columns of a table of rankings hold, by the names that the page shows."""
+    found = [(name, COLUMNS[name]) for name in names if name in COLUMNS]
+    found += [(f"… {end}", words) for end, words in SUFFIXES.items() if any(n.endswith(end) for n in names)]
+    return [(name.replace("_", " ").replace("  ", " "), words) for name, words in found]
