@@ -188,7 +188,7 @@ export function models(root: HTMLElement, joints: string[], all: Model[], scale:
       const made = document.createElement("tr");
       made.append(...words.map((w, k) => Object.assign(document.createElement(k ? tag : "th"), { textContent: w })));
       made.cells[0].scope = "row";
-      made.cells[0].className = "key";
+      made.cells[0].className = "names";
       return made;
     };
     head.append(cells("th", ["angle", ...states.map((s) => `state ${s}`)]));

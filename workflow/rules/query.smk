@@ -85,7 +85,12 @@ rule puppeteers:
         targets=lambda wildcards: FLOW.targets(wildcards.corpus),
         logs=lambda wildcards: list(FLOW.own_logs(wildcards.corpus).values()),
     output:
-        "results/{corpus}/puppeteers.csv",
+        report(
+            "results/{corpus}/puppeteers.csv",
+            caption="../report/puppeteers.rst",
+            category="Tables",
+            labels={"paper": "ours", "what": "two puppeteers, {corpus}"},
+        ),
     log:
         "results/logs/puppeteers/{corpus}.log",
     benchmark:

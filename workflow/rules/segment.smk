@@ -30,7 +30,12 @@ rule segment_lengths:
         segments=lambda wildcards: FLOW.of_shards(wildcards.corpus, "segments"),
         takes="results/{corpus}/takes.csv",
     output:
-        "results/{corpus}/segment_lengths.csv",
+        report(
+            "results/{corpus}/segment_lengths.csv",
+            caption="../report/segment_lengths.rst",
+            category="Segmentation",
+            labels={"corpus": "{corpus}", "what": "lengths of segments"},
+        ),
     log:
         "results/logs/segment_lengths/{corpus}.log",
     benchmark:
@@ -51,7 +56,12 @@ rule segmentation:
         annotations="results/{corpus}/annotations.tsv",
         points=lambda wildcards: FLOW.cut_points(wildcards.corpus),
     output:
-        "results/{corpus}/segmentation.csv",
+        report(
+            "results/{corpus}/segmentation.csv",
+            caption="../report/segmentation.rst",
+            category="Segmentation",
+            labels={"corpus": "{corpus}", "what": "cuts against annotations"},
+        ),
     log:
         "results/logs/segmentation/{corpus}.log",
     benchmark:
