@@ -195,6 +195,46 @@ def test_a_piece_of_a_take_plays_at_a_click(browser: Any, pages: dict[str, Path]
         pieces.nth(1).click()
         assert where.locator("figcaption").inner_text() != before
         assert pieces.nth(1).get_attribute("aria-pressed") == "true"
+        chosen = where.locator(".controls select").nth(1)
+        assert chosen.input_value() == "1"
+        chosen.select_option("0")
+        assert where.locator("figcaption").inner_text() == before
+
+
+def test_pieces_stand_under_their_curve(browser: Any, pages: dict[str, Path]) -> None:
+    for width in WIDTHS:
+        with opened(browser, pages["report"], width) as page:
+            where = part(page, "segmentation")
+            curve = where.locator(".u-over").bounding_box()
+            track = where.locator(".track").first.bounding_box()
+            assert track["x"] == pytest.approx(curve["x"], abs=1)
+            assert track["width"] == pytest.approx(curve["width"], abs=1)
+
+
+def test_words_in_plots_can_be_read_at_every_width(browser: Any, pages: dict[str, Path]) -> None:
+    with opened(browser, pages["report"]) as page:
+        for width in WIDTHS:
+            page.set_viewport_size({"width": width, "height": 900})
+            high = page.eval_on_selector_all(
+                ".plot text, .plot span",
+                "all => all.map(e => parseFloat(getComputedStyle(e).fontSize) * (e.getScreenCTM?.().a ?? 1))",
+            )
+            assert len(high) > 10
+            assert min(high) >= 11
+
+
+def test_pictures_do_not_glare_in_the_dark_and_print_as_they_are(
+    browser: Any, pages: dict[str, Path]
+) -> None:
+    look = "getComputedStyle(document.querySelector('video')).filter"
+    with opened(browser, pages["report"], theme="dark") as page:
+        assert page.evaluate(look).startswith("brightness")
+        page.locator("[data-theme-switch]").click()
+        assert page.evaluate(look) == "none"
+        page.locator("[data-theme-switch]").click()
+        assert page.evaluate(look).startswith("brightness")
+        page.emulate_media(media="print")
+        assert page.evaluate(look) == "none"
 
 
 def test_tables_are_sorted_at_a_click(browser: Any, pages: dict[str, Path]) -> None:

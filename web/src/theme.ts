@@ -43,8 +43,8 @@ export function startTheme(): void {
   for (const button of document.querySelectorAll<HTMLButtonElement>("button[data-theme-switch]")) {
     button.hidden = false;
     const show = (): void => {
-      button.setAttribute("aria-pressed", String(isDark()));
       button.textContent = isDark() ? "Light" : "Dark";
+      button.title = `Switch to the ${isDark() ? "light" : "dark"} theme`;
     };
     onTheme(show);
     button.addEventListener("click", () => set(isDark() ? "light" : "dark"));

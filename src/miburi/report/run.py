@@ -70,7 +70,7 @@ def benchmarks(folder: File) -> Table:
             )
         )
     rows.sort(key=lambda r: -float(r[2]))
-    return Table(("stage", "jobs", "seconds_in_all", "longest_s", "memory_mb"), tuple(rows))
+    return Table(("stage", "jobs", "seconds_in_all", "longest_s", "memory_MB"), tuple(rows))
 
 
 def _number(text: str | None) -> float:
