@@ -338,21 +338,8 @@ REAL = json.loads((Path(__file__).parent / "real.json").read_text(encoding="utf-
 
 # Figures that lie outside the band of real takes, and by which factor they may. In the recordings nobody flies
 # and turns over (takes of 49 and 85 do on their hands, in part at 30 frames/s, which blunts accelerations), so
-# that flips are quicker here; feet of people who stand are steadier here than in clips with a step at the end.
-OUTSIDE = {
-    ("backflip", "high"): 2.1,
-    ("front hand flip", "high"): 3.0,
-    ("cartwheel", "high"): 1.6,
-    ("jump kick", "high"): 1.5,
-    ("right punch", "high"): 1.3,
-    ("hand stand kicks", "high"): 1.2,
-    ("side twists", "high"): 1.15,
-    ("squats", "low"): 1.8,
-    ("side twists", "low"): 1.3,
-    ("right punch", "low"): 1.2,
-    ("Russian dance", "low"): 1.6,
-    ("climb 2 steps", "low"): 1.15,
-}
+# that flips are quicker here.
+OUTSIDE = {("backflip", "high"): 1.75, ("front hand flip", "high"): 1.6}
 
 
 @pytest.fixture(scope="module")
@@ -373,7 +360,7 @@ def test_speed_acceleration_and_jerk_are_those_of_real_people(imagined: dict[str
             assert low / below <= value <= high * above, (keyword, what, low, value, high)
             inside += low <= value <= high
             total += 1
-    assert inside / total > 0.8
+    assert inside / total > 0.9
 
 
 def test_no_foot_slides_further_than_in_real_takes(

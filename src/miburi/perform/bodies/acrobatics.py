@@ -42,39 +42,38 @@ def backflip(b: Score) -> Span:
     tiptoe(b, t, t + ready, 10.0)
     b.now = t + ready
     tiptoe(b, b.now, b.now + 0.25, 0.0)
-    crouch(b, b.beat(0.42), b.vary(0.30, 0.03), 0.16)
-    t, push = b.now, b.vary(0.26, 0.01)
+    crouch(b, b.beat(0.48), b.vary(0.30, 0.03), 0.16, arms=(0.15, -0.8, -0.3))
+    t, push = b.now, b.vary(0.3, 0.01)
     up = t + push
-    root(b, t, up, on_foot(b, -10.0, 0.03 * k, 0.0), even=False)
-    b.turn(t, up, 0.0, -22.0, 0.0)
+    root(b, t, up, on_foot(b, -10.0, 0.06 * k, 0.0), even=False)
+    b.turn(t, up, 0.0, -30.0, 0.0)
     b.trunk(t, up, -14.0)
     b.look(t, up, -16.0)
-    tiptoe(b, t + 0.4 * push, up, 48.0)
-    hands(b, t - 0.08, up + 0.04, (-0.02, 0.85, 0.4))
+    tiptoe(b, t + 0.4 * push, up, 48.0, rate=500.0)
+    hands(b, t - 0.16, up + 0.06, (-0.02, 0.75, 0.5))
     far = b.vary(0.34, 0.06) * k
     span = b.vary(0.70, 0.02) * math.sqrt(k)
     down = up + span
     under(b, -far)
-    b.fly(down, b.world(0.0, who.standing - 0.13 * k, 0.25 * who.ball_ahead - 0.10 * k), 0.0, -326.0, 0.0)
+    b.fly(down, b.world(0.0, who.standing - 0.15 * k, 0.25 * who.ball_ahead - 0.14 * k), 0.0, -312.0, 0.0)
     for side in SIDES:
         lift(b, side, up)
     pike = b.way("tuck", "tuck", "tuck", "pike") == "pike"
-    tuck = (0.02, -0.36, 0.56) if pike else (0.05, -0.42, 0.34)
-    leg_ = (0.02, -0.84, 0.0)
-    legs(b, up, up + 0.16 * span, leg_, 45.0, through=True)
-    legs(b, up + 0.16 * span, up + 0.44 * span, tuck, 25.0)
-    legs(b, up + 0.52 * span, up + 0.7 * span, (0.05, -0.62, 0.26), 15.0, through=True)
+    tuck = (0.02, -0.36, 0.56) if pike else (0.05, -0.44, 0.34)
+    leg_ = (0.02, -0.82, -0.18)
+    legs(b, up, up + 0.14 * span, leg_, 45.0, through=True)
+    legs(b, up + 0.14 * span, up + 0.42 * span, tuck, 25.0)
     b.trunk(up, up + 0.45 * span, 26.0)
     b.trunk(up + 0.55 * span, down, 6.0)
     b.look(up, up + 0.4 * span, 6.0)
     b.look(up + 0.4 * span, down, -22.0)
-    hands(b, up + 0.04, up + 0.55 * span, (-0.02, -0.4, 0.75))
-    hands(b, up + 0.55 * span, down + 0.15, (0.2, -0.25, 0.8))
+    hands(b, up + 0.06, up + 0.6 * span, (-0.02, -0.4, 0.75))
+    hands(b, up + 0.6 * span, down + 0.15, (0.2, -0.25, 0.8))
     b.revolved[0] -= 360.0
     for side in SIDES:
         yaw = b.heading + b.out(side) * who.toe_out
-        plant(b, side, up + 0.7 * span, down, b.world(*b.stance(side, 1.1)), yaw)
-    land(b, down, b.vary(0.28, 0.04))
+        plant(b, side, up + 0.54 * span, down, b.world(*b.stance(side, 1.1)), yaw)
+    land(b, down, b.vary(0.28, 0.04), pitch=14.0)
     end = b.now
     home(b)
     return start, end
@@ -89,15 +88,15 @@ def jump_kick(b: Score) -> Span:
     side = b.hand
     other = b.other(side)
     start = b.now
-    crouch(b, b.beat(0.42), b.vary(0.2, 0.02), 0.08)
-    t, push = b.now, b.vary(0.24, 0.01)
+    crouch(b, b.beat(0.42), b.vary(0.22, 0.02), 0.08, arms=(0.15, -0.8, -0.3))
+    t, push = b.now, b.vary(0.27, 0.01)
     up = t + push
     root(b, t, up, on_foot(b, 5.0, 0.03 * k), even=False)
     b.turn(t, up, 0.0, -2.0, 0.0)
     b.trunk(t, up, 2.0)
     b.look(t, up)
     tiptoe(b, t + 0.4 * push, up, 45.0, other)
-    hands(b, t - 0.05, up + 0.05, (0.1, -0.35, 0.6))
+    hands(b, t - 0.12, up + 0.1, (0.1, -0.4, 0.55))
     knee = (0.03, -0.42, 0.26)
     lift(b, side, t + 0.3 * push)
     leg(b, side, t + 0.3 * push, up + 0.05, knee, 25.0)
@@ -109,18 +108,16 @@ def jump_kick(b: Score) -> Span:
     leg(b, other, up, up + 0.5 * span, (0.04, -0.52, -0.12 if b.rng.random() < 0.5 else 0.16), 40.0)
     high = b.vary(-0.16, 0.1)
     far = math.sqrt(0.85**2 - high**2)
-    leg(b, side, up + 0.06 * span, up + 0.48 * span, (0.02, high, far), 20.0)
-    leg(b, side, up + 0.5 * span, up + 0.8 * span, (0.03, -0.62, 0.25), 15.0)
-    leg(b, other, up + 0.5 * span, up + 0.8 * span, (0.03, -0.78, -0.02), 25.0)
+    leg(b, side, up + 0.02 * span, up + 0.47 * span, (0.02, high, far), 20.0)
     b.trunk(up, up + 0.45 * span, 8.0, 0.0, b.out(side) * 12.0)
     b.trunk(up + 0.5 * span, down, 6.0)
-    b.reach(side, up, up + 0.8 * span, (0.3, -0.55, 0.2), arc=0.0, exact=True)
-    b.reach(other, up, up + 0.6 * span, (-0.05, -0.15, 0.7), arc=0.0, exact=True)
+    b.reach(side, up, up + 0.9 * span, (0.3, -0.55, 0.2), arc=0.0, exact=True)
+    b.reach(other, up, up + 0.8 * span, (-0.05, -0.15, 0.7), arc=0.0, exact=True)
     for s in SIDES:
         yaw = b.heading + b.out(s) * who.toe_out
         ahead = 0.12 * k if s == side else -0.08 * k
-        late = 0.07 if s == side else 0.0
-        plant(b, s, up + 0.8 * span + late, down + late, b.world(*b.stance(s, 1.2, ahead)), yaw)
+        late = 0.1 if s == side else 0.0
+        plant(b, s, up + 0.5 * span, down + late, b.world(*b.stance(s, 1.2, ahead)), yaw)
     land(b, down, b.vary(0.2, 0.03), arms=(0.25, -0.35, 0.45))
     end = b.now
     home(b)
@@ -136,8 +133,8 @@ def hand_flip(b: Score) -> Span:
     side = b.hand
     other = b.other(side)
     t = b.now
-    up = b.beat(0.34)
-    hands(b, t, t + up, (0.0, 0.92, 0.2))
+    up = b.beat(0.44)
+    hands(b, t, t + 1.1 * up, (0.05, 0.84, 0.4))
     lift(b, side, t + 0.2 * up)
     leg(b, side, t + 0.2 * up, t + up, (0.02, -0.58, 0.3), 20.0)
     root(b, t, t + up, on_foot(b, 4.0, 0.03 * k), even=False)
@@ -153,7 +150,7 @@ def hand_flip(b: Score) -> Span:
     b.trunk(t, t + step, 12.0)
     t += step
     gap, palm = 0.19 * k, (0.0, WRIST * k, ahead + 0.62 * k)
-    reach = b.beat(0.3)
+    reach = b.beat(0.36)
     for s in SIDES:
         palms(b, s, t - 0.12, t + reach, b.out(s) * gap, palm[2])
     lift(b, other, t - 0.05)
@@ -165,8 +162,8 @@ def hand_flip(b: Score) -> Span:
     b.turn(t, t + reach, 0.0, 116.0, 0.0, through=True, even=True)
     b.trunk(t, t + reach, -6.0)
     t += reach
-    push = b.vary(0.2, 0.01)
-    for pitch, bend, upright in ((152.0, -14.0, 0.3), (186.0, -20.0, 0.0), (226.0, -22.0, 0.25)):
+    push = b.vary(0.22, 0.01)
+    for pitch, bend, upright in ((152.0, -14.0, 0.3), (186.0, -20.0, 0.0), (226.0, -28.0, 0.25)):
         place = on_hands(b, palm, (0.0, pitch, 0.0), (bend, 0.0, 0.0), 0.96, upright)
         root(b, t, t + push, place, through=pitch < 200)
         b.turn(t, t + push, 0.0, pitch, 0.0, through=pitch < 200, even=True)
@@ -174,22 +171,21 @@ def hand_flip(b: Score) -> Span:
         if pitch < 160:
             tiptoe(b, t - 0.2, t - 0.05, 50.0, side)
             lift(b, side, t - 0.05)
-            leg(b, side, t - 0.05, t + 1.4 * push, (0.03, -0.82, -0.2), 45.0)
+            leg(b, side, t - 0.05, t + 2.6 * push, (0.03, -0.82, -0.2), 45.0)
         t += push
     span = b.vary(0.34, 0.02)
     far = 0.78 * k
     down = t + span
     under(b, palm[2] + far)
-    b.fly(down, b.world(0.0, who.standing - 0.1 * k, 0.25 * who.ball_ahead - 0.16 * k), 0.0, 337.0, 0.0)
-    legs(b, t, t + 0.6 * span, (0.04, -0.78, 0.06), 20.0)
+    b.fly(down, b.world(0.0, who.standing - 0.1 * k, 0.25 * who.ball_ahead - 0.18 * k), 0.0, 334.0, 0.0)
     hands(b, t, down + 0.1, (0.05, 0.85, 0.2))
     unpalm(b, t)
     b.trunk(t, down, -10.0)
     b.look(t, down, -14.0)
     b.revolved[0] += 360.0
     for s in SIDES:
-        plant(b, s, t + 0.6 * span, down, b.world(*b.stance(s, 1.1)), b.heading + b.out(s) * who.toe_out)
-    land(b, down, b.vary(0.2, 0.03), arms=(0.2, 0.4, 0.6))
+        plant(b, s, t, down, b.world(*b.stance(s, 1.1)), b.heading + b.out(s) * who.toe_out)
+    land(b, down, b.vary(0.2, 0.03), arms=(0.2, 0.4, 0.6), pitch=20.0)
     end = b.now
     home(b)
     return start, end
@@ -224,7 +220,7 @@ def cartwheel(b: Score) -> Span:
     tiptoe(b, t + 0.3 * step, t + 0.8 * step, 40.0, other)
     t += step
     first, second = lead + 0.52 * k, lead + 0.95 * k
-    gap = b.vary(0.23, 0.012)
+    gap = b.vary(0.265, 0.012)
     straight = b.way("cartwheel", "straight", "straight", "bent") == "straight"
     far = (0.45, -0.70, 0.0) if straight else (0.34, -0.58, 0.2)
     leg(b, other, t - 0.2 * step, t + 1.2 * gap, far, 45.0)
@@ -237,7 +233,7 @@ def cartwheel(b: Score) -> Span:
     palms(b, other, t - gap, t + gap, 0.0, second, 0.8 * turned)
     tiptoe(b, t - gap, t + 0.3 * gap, 50.0, side)
     lift(b, side, t + 0.3 * gap)
-    leg(b, side, t + 0.3 * gap, t + 2.2 * gap, far, 45.0)
+    leg(b, side, t + 0.3 * gap, t + 2.6 * gap, far, 45.0)
     middle = (0.0, WRIST * k, 0.5 * (first + second))
     for share, shift, upright in ((-132.0, -0.10, 0.6), (-172.0, 0.0, 0.0), (-212.0, 0.08, 0.4)):
         on = (0.0, middle[1], middle[2] + shift * k)
@@ -251,7 +247,7 @@ def cartwheel(b: Score) -> Span:
     unpalm(b, t - 0.3 * gap)
     root(b, t, t + gap, (0.0, 0.82 * k, one - 0.16 * k), through=True)
     b.turn(t, t + gap, turned * 1.05, 0.0, -sign * 268.0, through=True, even=True)
-    plant(b, other, t - 0.3 * gap, t + 0.9 * gap, b.world(0.0, 0.0, one), b.heading + 1.3 * turned, tip=18.0)
+    plant(b, other, t - 0.8 * gap, t + 1.1 * gap, b.world(0.0, 0.0, one), b.heading + 1.3 * turned, tip=18.0)
     t += gap
     b.reach(other, t, t + 2 * gap, (0.35, 0.6, 0.1), arc=0.0, exact=True)
     unpalm(b, t)

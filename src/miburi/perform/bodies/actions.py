@@ -36,8 +36,8 @@ def squats(b: Score, times: int) -> Span:
     who, k = b.who, b.who.height / 1.75
     steps.stand(b, b.stance("l", 1.5), b.stance("r", 1.5), yaws=(8.0, -8.0))
     arms = b.way("squats", "ahead", "ahead", "swing", "hips", "head", "out")
-    low = b.way("depth", "half", "half", "deep") == "deep" and who.age < 60
-    depth = min(max(b.vary(1.55 if low else 1.1, 0.12) * who.size, 0.7), 1.7) * who.thigh
+    low = b.way("depth", "half", "deep", "deep") == "deep" and who.age < 60
+    depth = min(max(b.vary(1.42 if low else 1.12, 0.12) * who.size, 0.8), 1.7) * who.thigh
     t = b.now
     if arms in ("hips", "head"):
         ready = b.beat(0.5 if arms == "hips" else 0.9)
@@ -52,18 +52,20 @@ def squats(b: Score, times: int) -> Span:
         t += ready
     start = t
     for _ in range(times):
-        down, hold, up = b.beat(0.85), b.beat(0.1, 0.4), b.beat(0.8)
+        down, hold, up = b.beat(0.82), b.beat(0.12, 0.4), b.beat(0.76)
         deep = depth * b.vary(1.0, 0.06)
         share = deep / who.thigh
         b.pelvis(t, t + down, 0.0, -deep, -0.13 * k * share)
         b.turn(t, t + down, 0.0, 17.0 * share, 0.0)
         b.trunk(t, t + down, 15.0 * share)
         b.look(t, t + down, -18.0 * share)
-        heel = b.vary(19.0, 4.0) * share**1.5
+        heel = b.vary(23.0, 4.0) * share**1.5
+        # the heels leave the floor late, when the ankles give no more, and come back first
         for side in SIDES:
             toes = b.last(f"{side}_sole").value[0]
-            b.move(f"{side}_sole", t + 0.3 * down, t + down, (toes, max(heel, 3.0)))
-            b.move(f"{side}_sole", t + down + hold, t + down + hold + 0.7 * up, (toes, 0.0))
+            late = abs(b.vary(0.0, 0.03))
+            b.move(f"{side}_sole", t + 0.45 * down + late, t + down + late, (toes, max(heel, 3.0)))
+            b.move(f"{side}_sole", t + down + hold, t + down + hold + 0.6 * up, (toes, 0.0))
         if arms == "out":
             for side in SIDES:
                 b.reach(side, t, t + down, (0.45, -0.8, -0.05), arc=0.0)
@@ -77,7 +79,7 @@ def squats(b: Score, times: int) -> Span:
         elif arms == "ahead":
             for side in SIDES:
                 b.reach(side, t, t + up, (0.0, b.vary(-0.25, 0.1), 0.85), arc=0.0)
-        t += up + abs(b.vary(0.1, 0.1))
+        t += up + abs(b.vary(0.12, 0.1))
     b.now = t
     sink = b.beat(0.6 if arms != "head" else 1.0)
     if arms == "head":
@@ -97,7 +99,7 @@ def twists(b: Score, times: int) -> Span:
     ready = b.beat(0.6)
     for side in SIDES:
         if arms == "out":
-            b.reach(side, t, t + ready, (0.92, 0.0, 0.12), arc=0.1)
+            b.reach(side, t, t + ready, (0.8, 0.0, 0.2), arc=0.1)
         elif arms == "bent":
             b.reach(side, t, t + ready, (-0.22, b.vary(-0.08, 0.03), 0.52), arc=0.1)
             b.move(f"{side}_swivel", t, t + ready, (55.0,))
@@ -108,20 +110,20 @@ def twists(b: Score, times: int) -> Span:
     start = t - 0.15
     way = 1.0 if b.rng.random() < 0.5 else -1.0
     size = b.who.size
-    lean, stoop = float(b.rng.uniform(4.0, 15.0)), float(b.rng.uniform(4.0, 14.0))
+    lean, stoop = float(b.rng.uniform(6.0, 15.0)), float(b.rng.uniform(6.0, 14.0))
     for number in range(2 * times):
-        span = b.beat(0.85) * (0.7 if number == 0 else 1.0)
-        b.turn(t, t + span, 24.0 * way * size, 0.0, 0.0)
-        b.trunk(t + 0.03, t + span + 0.04, stoop, lean * way, b.vary(40.0, 3.0) * way * size)
+        # arms that are stretched out are slower to turn back
+        span = b.beat(0.8 if arms == "out" else 0.72) * (0.7 if number == 0 else 1.0)
+        b.turn(t, t + span, 28.0 * way * size, 0.0, 0.0)
+        b.trunk(t + 0.03, t + span + 0.04, stoop, lean * way, b.vary(36.0, 3.0) * way * size)
         b.look(t + 0.02, t + span + 0.06, 0.0, b.vary(15.0, 4.0) * way)
-        b.pelvis(t, t + span, -b.vary(0.05, 0.012) * way, -0.02, 0.0)
+        b.pelvis(t, t + span, -b.vary(0.09, 0.012) * way, -0.02, 0.0)
         for side in SIDES:  # the heel that the body turns away from comes up
             toes = b.heading + b.out(side) * (b.who.toe_out + 4.0)
             lifts = b.out(side) * way < 0
-            b.move(
-                f"{side}_sole", t, t + span, (toes + 10.0 * way * lifts, b.vary(20.0, 4.0) if lifts else 0.0)
-            )
-        t += span + 0.04
+            pivot = (toes + 16.0 * way * lifts, b.vary(24.0, 4.0) if lifts else 0.0)
+            b.move(f"{side}_sole", t + 0.1 * span, t + 0.85 * span, pivot)
+        t += span + b.beat(0.08, 0.2)
         way = -way
     end = t
     for side in SIDES:

@@ -126,9 +126,11 @@ def russian(b: Score, times: int) -> Span:
         b.pelvis(t + 0.42 * span, t + 0.85 * span, b.out(stay) * 0.035 * k, low - 0.01, -0.06 * k)
         b.turn(t, t + 0.7 * span, -b.out(kick) * b.vary(9.0, 2.0), -4.0 + b.vary(0.0, 2.0), 0.0)
         b.trunk(t, t + 0.7 * span, 12.0, 0.0, b.out(kick) * 8.0)
-        if fold != "folded":  # the arms go with the hops
-            bob = b.vary(0.2, 0.05) if number % 2 else b.vary(-0.22, 0.05)
-            hands(b, t, t + 0.9 * span, (arms[0], arms[1] + bob, arms[2]))
+        for s in SIDES if fold != "folded" else "":  # the arms beat against the hops and the legs
+            far = b.vary(0.26, 0.05) * (-1.0 if s == kick else 1.0)
+            bob = b.vary(0.2, 0.05) if number % 2 else b.vary(-0.26, 0.05)
+            place = (arms[0] - 0.3 * abs(far), arms[1] + bob, arms[2] + far)
+            b.reach(s, t, t + 0.85 * span, place, arc=0.0, exact=True)
         t += span
         kick = b.other(kick)
     last = b.other(kick)

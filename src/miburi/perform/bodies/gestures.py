@@ -39,7 +39,7 @@ def punch(b: Score, times: int, side: str = "r") -> Span:
     t += ready + 0.1
     kind = b.way("punch", "straight", "straight", "hook", "upper")
     for _ in range(times):
-        back, out, again = b.beat(0.22), b.beat(0.3), b.beat(0.42)
+        back, out, again = b.beat(0.22), b.beat(0.32), b.beat(0.42)
         if bounce:
             b.pelvis(t, t + 0.8 * back, -0.02 * m, low - 0.02, 0.0)
         high = {"straight": 0.80, "hook": 0.82, "upper": 0.86}[kind] * who.height + b.vary(0.0, 0.05) * k
@@ -54,7 +54,7 @@ def punch(b: Score, times: int, side: str = "r") -> Span:
         b.trunk(t - 0.02, t + out, 9.0, 0.0, 34.0 * m * who.size)
         b.look(t, t + out, -8.0, -22.0 * m)
         b.pelvis(t - 0.04, t + out, 0.02 * m, low - 0.01, 0.07 * k)
-        b.move(f"{side}_sole", t - 0.04, t + out, (b.heading - 14.0 * m, 24.0))
+        b.move(f"{side}_sole", t - 0.04, t + 0.85 * out, (b.heading - 14.0 * m, 30.0))
         if kind == "hook":
             b.move(f"{side}_swivel", t, t + out, (55.0,))
         arc = {"straight": 0.0, "hook": 0.12, "upper": -0.05}[kind]

@@ -69,11 +69,14 @@ def plant(
     b.air[side].append((opened, end))
 
 
-def tiptoe(b: Score, start: float, end: float, pitch: float, sides: str = "lr") -> None:
-    """Lift the heels by rolling over the balls."""
+def tiptoe(b: Score, start: float, end: float, pitch: float, sides: str = "lr", *, rate: float = 0.0) -> None:
+    """Lift the heels by rolling over the balls; who jumps off still does at the end, degrees/s."""
     for side in sides:
-        yaw = b.last(f"{side}_sole").value[0]
-        b.move(f"{side}_sole", start, end, (yaw, pitch))
+        sole = f"{side}_sole"
+        yaw = b.last(sole).value[0]
+        b.move(sole, start, end, (yaw, pitch))
+        if rate:
+            b.tracks[sole][-1] = b.last(sole)._replace(speed=(0.0, rate))
 
 
 def hands(
@@ -189,16 +192,26 @@ def crouch(
     b.now = t + seconds
 
 
-def land(b: Score, t: float, deep: float = 0.26, *, arms: Vector = (0.15, -0.35, 0.75)) -> None:
-    """Give way after feet have come down at a time, and stand up."""
-    k, down, up = b.who.height / 1.75, b.vary(0.2, 0.01), b.beat(0.55)
+def land(
+    b: Score,
+    t: float,
+    deep: float = 0.26,
+    *,
+    arms: Vector = (0.15, -0.35, 0.75),
+    pitch: float | None = None,
+) -> None:
+    """Give way after feet have come down at a time, and stand up.
+
+    `pitch` is the pelvis's, degrees, when the landing has been taken up; absent: the deeper, the further ahead.
+    """
+    k, down, up = b.who.height / 1.75, b.vary(0.24, 0.01), b.beat(0.55)
     last = b.last("pelvis")
     if last.speed is not None:  # as deep as it takes to stop evenly
         high = b.local(last.value)[1] - b.who.standing
         deep = (0.47 * down * abs(last.speed[1]) - high) / k
     b.pelvis(t, t + down, 0.0, -deep * k, -0.12 * k)
-    b.turn(t, t + down, 0.0, 110.0 * deep, 0.0)
-    b.trunk(t, t + down, 60.0 * deep)
+    b.turn(t, t + 1.25 * down, 0.0, 80.0 * deep if pitch is None else pitch, 0.0)
+    b.trunk(t, t + 1.25 * down, 45.0 * deep)
     b.look(t, t + down, -30.0)
     hands(b, t - 0.05, t + down + 0.2, arms)
     t += down + 0.04
