@@ -1,7 +1,7 @@
 """Contact sheets of what the simulated people do, for docs/everyday.md, or beside real takes to look at.
 
 python tools/everyday_sheets.py                      writes docs/everyday/{keyword}.png
-python tools/everyday_sheets.py FOLDER [KEYWORD …]   the same elsewhere
+python tools/everyday_sheets.py FOLDER [KEYWORD …]   the same elsewhere, also of the other motions
 """
 
 from __future__ import annotations
@@ -18,6 +18,13 @@ from miburi.render.sheets import Strip, evenly, sheet
 
 ROOT = Path(__file__).parents[1]
 COLUMNS, ROWS, SIZE = 8, 2, 144
+BY = {
+    "sit down": "sit on chair",
+    "stand up": "sit on chair",
+    "go down 2 steps": "climb 2 steps",
+    "get up": "lie down",
+}
+"""Motions that come with others → which."""
 
 
 def main(folder: str = str(ROOT / "docs" / "everyday"), *keywords: str) -> None:
@@ -26,7 +33,8 @@ def main(folder: str = str(ROOT / "docs" / "everyday"), *keywords: str) -> None:
     out.mkdir(parents=True, exist_ok=True)
     plans = bodies.plan(2011)
     for keyword in keywords or bodies.KEYWORDS:
-        entry, clip = next((p, c) for p in plans for c in p.clips if c.keyword == keyword)
+        does = BY.get(keyword, keyword)
+        entry, clip = next((p, c) for p in plans for c in p.clips if c.keyword == does)
         alone = Plan(
             f"{entry.performer} sheet {keyword}", entry.performer, 0.0, (keyword,), (_few(clip),), 60.0, False
         )

@@ -44,6 +44,19 @@ def small() -> list[tuple[bodies.Plan, Score, Motion, list[Annotation]]]:
     return result
 
 
+@pytest.fixture(scope="module")
+def alone() -> dict[str, tuple[Score, Motion]]:
+    """Every motion of the large plan once, by one who can do them all."""
+    result = {}
+    for keyword in take.MOTIONS:
+        entry = bodies.plan(SEED)[0]._replace(
+            take=f"alone {keyword}", performer="rowan", clips=(bodies.Clip(keyword, 3, 1),)
+        )
+        score, _ = take.compose(entry, SEED)
+        result[keyword] = score, body.embody(score, store.seed(SEED, keyword))
+    return result
+
+
 # --- the plan ----------------------------------------------------------------------------------------
 
 
@@ -221,21 +234,32 @@ def test_feet_stand_still_and_nothing_goes_through_the_floor(
     small: list[tuple[bodies.Plan, Score, Motion, list[Annotation]]],
 ) -> None:
     for _, score, motion, _ in small:
-        place, fps = motion.positions(), motion.fps
+        place = motion.positions()
         assert place[..., 1].min() > 0.0 and motion.end_positions()[..., 1].min() > -0.005
-        t = np.arange(len(motion)) / fps
-        for side, contacts in steps.footfalls(score).items():
-            pitch = curves.curve(score.tracks[f"{side}_sole"], t)[:, 1]
-            ball = place[:, J[f"{LONG[side]}ToeBase"]]
-            speed = np.linalg.norm(np.gradient(ball[:, [0, 2]], 1 / fps, axis=0), axis=1)
-            for start, end in contacts:
-                rows = np.flatnonzero((t > start + 1.5 / fps) & (t < end - 1.5 / fps) & (pitch > -0.01))
-                if len(rows) < 5:
-                    continue
-                still = ball[rows] - np.median(ball[rows], axis=0)
-                assert np.linalg.norm(still[:, [0, 2]], axis=1).max() < 0.004  # 4 mm
-                assert np.abs(still[:, 1]).max() < 0.02
-                assert np.percentile(speed[rows], 95) < 0.05
+        _stands_still(score, motion)
+
+
+def test_feet_stand_still_in_every_motion(alone: dict[str, tuple[Score, Motion]]) -> None:
+    for score, motion in alone.values():
+        _stands_still(score, motion)
+
+
+def _stands_still(score: Score, motion: Motion) -> None:
+    """The ball of a foot that stands stays where it is."""
+    place, fps = motion.positions(), motion.fps
+    t = np.arange(len(motion)) / fps
+    for side, contacts in steps.footfalls(score).items():
+        pitch = curves.curve(score.tracks[f"{side}_sole"], t)[:, 1]
+        ball = place[:, J[f"{LONG[side]}ToeBase"]]
+        speed = np.linalg.norm(np.gradient(ball[:, [0, 2]], 1 / fps, axis=0), axis=1)
+        for start, end in contacts:
+            rows = np.flatnonzero((t > start + 1.5 / fps) & (t < end - 1.5 / fps) & (pitch > -0.01))
+            if len(rows) < 5:
+                continue
+            still = ball[rows] - np.median(ball[rows], axis=0)
+            assert np.linalg.norm(still[:, [0, 2]], axis=1).max() < 0.004, motion.name  # 4 mm
+            assert np.abs(still[:, 1]).max() < 0.02
+            assert np.percentile(speed[rows], 95) < 0.05
 
 
 def test_speeds_are_human(small: list[tuple[bodies.Plan, Score, Motion, list[Annotation]]]) -> None:
@@ -370,6 +394,17 @@ def test_no_foot_slides_further_than_in_real_takes(
     assert len(found) > 50 and REAL["stands"] > 50
     assert np.percentile(found, 95) < REAL["slide_m_per_s"][2]
     assert np.median(found) < REAL["slide_m_per_s"][1]
+
+
+def test_no_foot_slides_in_any_motion(
+    imagined: dict[str, list[Motion]], alone: dict[str, tuple[Score, Motion]]
+) -> None:
+    """Each motion by itself: every stand of it, keywords by four who are not in the corpus and one who is."""
+    for keyword, (_, motion) in alone.items():
+        found = [x for m in (motion, *imagined.get(keyword, ())) for x in measure_bodies.slide(m)]
+        assert len(found) >= 2, keyword
+        assert np.percentile(found, 95) < REAL["slide_m_per_s"][2], (keyword, max(found))
+        assert np.median(found) < REAL["slide_m_per_s"][1], keyword
 
 
 def test_nobody_goes_through_the_floor_or_beyond_a_joint(imagined: dict[str, list[Motion]]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from miburi.perform.bodies import steps
 from miburi.perform.bodies.gestures import Span
 from miburi.perform.bodies.score import SIDES, Score
@@ -32,12 +34,14 @@ def descend(b: Score) -> Span:
 
 
 def squats(b: Score, times: int) -> Span:
-    """Knee bends with the arms ahead, at the hips or behind the head."""
+    """Knee bends on the soles or upright on the toes; arms ahead, at the hips or behind the head."""
     who, k = b.who, b.who.height / 1.75
     steps.stand(b, b.stance("l", 1.5), b.stance("r", 1.5), yaws=(8.0, -8.0))
     arms = b.way("squats", "ahead", "ahead", "swing", "hips", "head", "out")
     low = b.way("depth", "half", "deep", "deep") == "deep" and who.age < 60
-    depth = min(max(b.vary(1.42 if low else 1.12, 0.12) * who.size, 0.8), 1.7) * who.thigh
+    toes_ = b.way("balance", "soles", "soles", "toes") == "toes" and who.age < 60
+    lean = 0.3 if toes_ else 1.0
+    depth = min(max(b.vary(1.42 if low else 1.12, 0.12) * who.size, 0.8), 1.42) * who.thigh
     t = b.now
     if arms in ("hips", "head"):
         ready = b.beat(0.5 if arms == "hips" else 0.9)
@@ -55,17 +59,17 @@ def squats(b: Score, times: int) -> Span:
         down, hold, up = b.beat(0.82), b.beat(0.12, 0.4), b.beat(0.76)
         deep = depth * b.vary(1.0, 0.06)
         share = deep / who.thigh
-        b.pelvis(t, t + down, 0.0, -deep, -0.13 * k * share)
-        b.turn(t, t + down, 0.0, 17.0 * share, 0.0)
-        b.trunk(t, t + down, 15.0 * share)
-        b.look(t, t + down, -18.0 * share)
-        heel = b.vary(23.0, 4.0) * share**1.5
+        b.pelvis(t, t + down, 0.0, -deep, -0.13 * k * share * (0.5 if toes_ else 1.0))
+        b.turn(t, t + down, 0.0, 17.0 * min(share, 1.1) * lean, 0.0)
+        b.trunk(t, t + down, 15.0 * share * lean)
+        b.look(t, t + down, -18.0 * share * lean)
+        heel = b.vary(34.0, 4.0) * share**0.5 if toes_ else b.vary(23.0, 4.0) * share**1.5
         # the heels leave the floor late, when the ankles give no more, and come back first
         for side in SIDES:
             toes = b.last(f"{side}_sole").value[0]
             late = abs(b.vary(0.0, 0.03))
-            b.move(f"{side}_sole", t + 0.45 * down + late, t + down + late, (toes, max(heel, 3.0)))
-            b.move(f"{side}_sole", t + down + hold, t + down + hold + 0.6 * up, (toes, 0.0))
+            b.move(f"{side}_sole", t + 0.5 * down + late, t + down + late, (toes, max(heel, 3.0)))
+            b.move(f"{side}_sole", t + down + hold, t + down + hold + 0.55 * up, (toes, 0.0))
         if arms == "out":
             for side in SIDES:
                 b.reach(side, t, t + down, (0.45, -0.8, -0.05), arc=0.0)
@@ -146,9 +150,10 @@ def kick(b: Score, times: int, side: str = "") -> Span:
     start = t
     stance = b.local(b.last(f"{other}_foot").value)
     for _ in range(times):
-        back, go, down = b.beat(0.45), b.beat(0.32), b.beat(0.5)
+        back, go, down = b.beat(0.45), b.beat(0.36), b.beat(0.5)
         high = min(max(b.vary(0.5, 0.12) * who.size, 0.25), 0.66) * k
-        far = b.vary(0.68, 0.04) * k
+        # as far as a leg that is nearly straight reaches from a hip that goes with it, and the ball beyond the ankle
+        far = (math.sqrt(0.8**2 - (0.86 - high / k) ** 2) + b.vary(0.3, 0.03)) * k
         foot = b.last(f"{side}_foot").value
         place = b.local(foot)
         yaw = b.last(f"{side}_sole").value[0]
@@ -330,8 +335,6 @@ def swing_legs(b: Score, times: int) -> Span:
     thigh, shank = who.thigh / k, who.shank / k
 
     def place(angle: float) -> tuple[float, float, float]:
-        import math
-
         a = math.radians(angle)
         return (0.02, -0.07 - shank * math.cos(a) * 0.99, thigh * 0.97 + shank * math.sin(a) * 0.99)
 

@@ -13,9 +13,10 @@ def phone(b: Score) -> Span:
     t = b.now
     start = t
     up = b.beat(0.85)
-    b.reach(side, t, t + up, (b.vary(0.095, 0.01), b.vary(-0.03, 0.015), b.vary(0.05, 0.01)), "head", arc=0.1)
-    b.move(f"{side}_swivel", t, t + up, (b.vary(6.0, 8.0),))
-    b.move(f"{side}_wrist", t, t + up, (-15.0, 0.0, 30.0))
+    # the wrist is at the jaw and the elbow hangs, so that the fingers are beside the ear
+    b.reach(side, t, t + up, (b.vary(0.12, 0.01), b.vary(-0.05, 0.015), b.vary(0.06, 0.01)), "head", arc=0.1)
+    b.move(f"{side}_swivel", t, t + up, (b.vary(-38.0, 6.0),))
+    b.move(f"{side}_wrist", t, t + up, (0.0, -10.0, 0.0))
     b.look(t, t + up, 3.0, b.vary(0.0, 8.0), -b.out(side) * 5.0)
     t += up
     end = t + b.beat(2.2, 0.3)
@@ -142,7 +143,7 @@ def stretch(b: Score, times: int) -> Span:
             b.move(f"{side}_swivel", t, t + up, (25.0,))
         else:
             b.reach(side, t, t + 0.5 * up, (0.75, 0.15, 0.35), through=True)
-            b.reach(side, t + 0.5 * up, t + up, (-0.12, 0.92, 0.12), arc=0.0)
+            b.reach(side, t + 0.5 * up, t + up, (-0.1, 1.02, 0.12), arc=0.0)
     b.trunk(t, t + up, -3.0)
     t += up
     for number in range(times if one else 2 * times):
@@ -202,7 +203,7 @@ def reach_up(b: Score, times: int) -> Span:
         lean = 0.0 if both else b.out(side)
         for s in "lr":
             if both or s == side:
-                b.reach(s, t, t + go, (-0.05, 0.93, 0.3), arc=0.16)
+                b.reach(s, t, t + go, (-0.05, 1.02, 0.33), arc=0.16)
             if tip:
                 yaw = b.last(f"{s}_sole").value[0]
                 b.move(f"{s}_sole", t + 0.3 * go, t + go, (yaw, 24.0))

@@ -70,8 +70,8 @@ def lie_down(b: Score) -> Span:
     go, sit, back = b.beat(1.0), b.beat(0.7), b.beat(1.1)
     b.look(t, t + 0.5 * go, 14.0)
     root(b, t, t + go, (0.0, 0.42 * k, -0.12 * k), through=True)
-    b.turn(t, t + go, 0.0, 34.0, 0.0)
-    b.trunk(t, t + go, 34.0)
+    b.turn(t, t + go, 0.0, 32.0, 0.0)
+    b.trunk(t, t + go, 20.0)
     tiptoe(b, t + 0.4 * go, t + go, 12.0)
     side = b.hand
     for s in SIDES:
@@ -127,8 +127,9 @@ def get_up(b: Score) -> Span:
     ahead = seat + 0.42 * k
     tiptoe(b, t, t + 0.7 * over, 24.0)
     root(b, t, t + over, (0.0, 0.36 * k, ahead - b.who.ball_ahead - 0.10 * k), through=True)
-    b.turn(t, t + over, 0.0, 46.0, 0.0)
-    b.trunk(t, t + over, 42.0)
+    b.turn(t, t + over, 0.0, 40.0, 0.0)
+    b.trunk(t, t + over, 26.0)
+    b.look(t, t + over, -8.0)
     for s in SIDES:
         b.reach(s, t + 0.35 * over, t + over + 0.1, (0.1, -0.55, 0.6), arc=0.0)
     unpalm(b, t + 0.35 * over)

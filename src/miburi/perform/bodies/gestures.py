@@ -275,8 +275,8 @@ def wave(b: Score, times: int) -> Span:
     start = t
     up = b.beat(0.55)
     wide = 0.17 * b.who.size
-    high = b.vary(0.42, 0.1)
-    b.reach(side, t, t + up, (0.42 - wide, high, 0.3), arc=0.12)
+    high, out = b.vary(0.42, 0.1), 0.54
+    b.reach(side, t, t + up, (out - wide, high, 0.3), arc=0.12)
     b.move(f"{side}_swivel", t, t + up, (10.0,))
     b.look(t, t + up, -3.0)
     b.trunk(t, t + up, -1.0, -b.out(side) * 2.0)
@@ -284,7 +284,7 @@ def wave(b: Score, times: int) -> Span:
     for _ in range(times):
         for sign in (1.0, -1.0):
             span = b.beat(0.27)
-            b.reach(side, t, t + span, (0.42 + sign * wide, high - 0.04 * sign, 0.3), arc=0.0)
+            b.reach(side, t, t + span, (out + sign * wide, high - 0.04 * sign, 0.3), arc=0.0)
             t += span
     down = b.beat(0.65)
     b.relax(t, t + down, side)
@@ -301,9 +301,10 @@ def clap(b: Score, times: int) -> Span:
     up = b.beat(0.55)
     high, near = b.vary(-0.18, 0.06), b.vary(0.62, 0.05)
     gap = 0.16 * b.who.size
-    middle = -0.30
+    middle = -0.24
     for side in "lr":
         b.reach(side, t, t + up, (middle + gap, high, near), arc=0.06)
+        b.move(f"{side}_wrist", t, t + up, (0.0, -35.0, 0.0))  # fingers ahead, palms towards each other
     b.trunk(t, t + up, 2.0)
     t += up
     for _ in range(times):

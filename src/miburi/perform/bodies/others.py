@@ -97,15 +97,17 @@ def catch(b: Score, times: int) -> Span:
         if one and s != b.hand:
             b.reach(s, t, t + go, (0.25, -0.7, 0.3))
             continue
-        x = (-0.27 if not one else 0.0) + b.out(s) * aside
+        x = (-0.2 if not one else 0.0) + b.out(s) * aside
         b.reach(s, t, t + go, (x, high, b.vary(0.78, 0.03)), arc=0.04)
+        b.move(f"{s}_wrist", t, t + go, (0.0, -25.0, 0.0))  # fingers ahead and apart
     b.pelvis(t, t + go, 0.5 * aside, -0.04, 0.03)
     b.trunk(t, t + go, 6.0, 0.0, 30.0 * aside)
     t += go + 0.05
     for s in SIDES:
         if one and s != b.hand:
             continue
-        b.reach(s, t, t + give, (-0.28, min(high, 0.0) - 0.2, 0.42), arc=0.0)
+        b.reach(s, t, t + give, (-0.2, min(high, 0.0) - 0.2, 0.48), arc=0.0)
+        b.move(f"{s}_wrist", t, t + give, (0.0, -38.0, 0.0))
     b.pelvis(t, t + give, 0.2 * aside, -0.06, -0.02)
     b.trunk(t, t + give, 12.0)
     b.look(t, t + give, 16.0)
@@ -188,8 +190,9 @@ def arm_circles(b: Score, times: int) -> Span:
                 180.0 - way * 45.0 * number + (180.0 if turn_ and s == b.hand and number else 0.0)
             )
             high, far = math.cos(a), math.sin(a)
-            wide = 0.12 + 0.16 * (far < 0) + 0.04 * (high > 0.5)
-            value = (wide, 0.93 * high, 0.93 * far if far > 0 else 0.55 * far)
+            # straight; behind the back a shoulder lets them pass further out only; the shoulder rises with them
+            aside = 0.12 + 0.6 * max(-far, 0.0)
+            value = (aside, (1.03 if high > 0 else 0.98) * high, far if far > 0 else 0.72 * far)
             span = 2 * step if number == 0 or (number == 1 and turn_) else step
             b.move(f"{s}_hand", t, t + span, value, "arm", through=number < count, exact=True, even=True)
         if number % 2:
@@ -215,7 +218,7 @@ def side_bend(b: Score, times: int) -> Span:
         go, back = b.beat(1.0), b.beat(0.85)
         roll = b.vary(24.0, 3.0) * b.who.size * -b.out(side)
         b.reach(side, t, t + 0.5 * go, (0.8, 0.1, 0.3), through=True, exact=True)
-        b.reach(side, t + 0.5 * go, t + go, (-0.3, 0.86, 0.15), arc=0.0, exact=True)
+        b.reach(side, t + 0.5 * go, t + go, (-0.28, 0.98, 0.15), arc=0.0, exact=True)
         b.reach(b.other(side), t, t + go, (0.1, -0.02, 0.1), "hip")
         b.trunk(t, t + go, 2.0, -roll, 0.0)
         b.turn(t, t + go, 0.0, 0.0, -0.2 * roll)
