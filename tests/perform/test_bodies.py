@@ -418,6 +418,7 @@ def test_nobody_goes_through_the_floor_or_beyond_a_joint(imagined: dict[str, lis
                 assert knee[:, 0].min() > -0.01 and knee[:, 0].max() < 160, keyword
                 assert elbow[:, 1].min() > -0.01 and elbow[:, 1].max() < 158, keyword
                 assert np.linalg.norm(_turns(motion, f"{side}Shoulder"), axis=1).max() < 50, keyword
+                assert np.linalg.norm(_turns(motion, f"{side}UpLeg"), axis=1).max() < 165, keyword
             for joint, most in (("Spine", 40), ("Spine1", 55), ("Spine2", 50), ("Neck", 45), ("Head", 60)):
                 assert np.linalg.norm(_turns(motion, joint), axis=1).max() < most, (keyword, joint)
 

@@ -149,7 +149,7 @@ def hand_flip(b: Score) -> Span:
     b.turn(t, t + step, 0.0, 32.0, 0.0, through=True, even=True)
     b.trunk(t, t + step, 12.0)
     t += step
-    gap, palm = 0.19 * k, (0.0, WRIST * k, ahead + 0.62 * k)
+    gap, palm = 0.19 * k, (0.0, WRIST * k, ahead + 0.77 * k)
     reach = b.beat(0.36)
     for s in SIDES:
         palms(b, s, t - 0.12, t + reach, b.out(s) * gap, palm[2])
@@ -158,9 +158,9 @@ def hand_flip(b: Score) -> Span:
     leg(b, other, t - 0.05, t + reach, (0.03, -0.8, -0.22), 45.0)
     leg(b, other, t + reach, t + reach + 0.3, (0.03, -0.83, -0.12), 45.0)
     b.look(t, t + reach, -30.0)
-    root(b, t, t + reach, on_hands(b, palm, (0.0, 116.0, 0.0), (-6.0, 0.0, 0.0), 0.95, 0.6), through=True)
+    root(b, t, t + reach, on_hands(b, palm, (0.0, 116.0, 0.0), (16.0, 0.0, 0.0), 0.95, 0.6), through=True)
     b.turn(t, t + reach, 0.0, 116.0, 0.0, through=True, even=True)
-    b.trunk(t, t + reach, -6.0)
+    b.trunk(t, t + reach, 16.0)
     t += reach
     push = b.vary(0.22, 0.01)
     for pitch, bend, upright in ((152.0, -14.0, 0.3), (186.0, -20.0, 0.0), (226.0, -28.0, 0.25)):
@@ -278,7 +278,7 @@ def _kick_up(b: Score, ahead: float, side: str) -> float:
     b.now = t + up
     t = b.now
     step = b.beat(0.4)
-    lead = 0.42 * k
+    lead = 0.36 * k
     lift(b, side, t)
     plant(b, side, t, t + step, b.world(b.out(side) * 0.06 * k, 0.0, lead), b.heading, tip=-2.0)
     root(b, t, t + step, (0.0, who.standing - 0.13 * k, 0.24 * k), through=True)
@@ -292,9 +292,9 @@ def _kick_up(b: Score, ahead: float, side: str) -> float:
     lift(b, other, t)
     leg(b, other, t, t + down, (0.03, -0.8, -0.22), 40.0)
     palm = (0.0, WRIST * k, ahead)
-    root(b, t, t + down, on_hands(b, palm, (0.0, 114.0, 0.0), (4.0, 0.0, 0.0), 0.95, 0.6), through=True)
+    root(b, t, t + down, on_hands(b, palm, (0.0, 114.0, 0.0), (18.0, 0.0, 0.0), 0.95, 0.6), through=True)
     b.turn(t, t + down, 0.0, 114.0, 0.0, through=True, even=True)
-    b.trunk(t, t + down, 4.0)
+    b.trunk(t, t + down, 18.0)
     b.look(t, t + down, -32.0)
     t += down
     swing = b.beat(0.46)
@@ -356,7 +356,7 @@ def handstand(b: Score) -> Span:
     start = b.now
     stand(b, b.stance("l"), b.stance("r"))
     still(b)
-    side, ahead = b.hand, 1.02 * k
+    side, ahead = b.hand, 1.18 * k
     t = _kick_up(b, ahead, side)
     palm = (0.0, WRIST * k, ahead)
     end = t + b.beat(1.5, 0.3)
@@ -395,14 +395,14 @@ def hand_stand_kicks(b: Score, times: int) -> Span:
     stand(b, b.stance("l"), b.stance("r"))
     still(b)
     start = b.now
-    t, ahead = b.now, 0.78 * k
+    t, ahead = b.now, 0.86 * k
     down = b.beat(0.7)
     for s in SIDES:
         palms(b, s, t + 0.2 * down, t + down, b.out(s) * 0.2 * k, ahead)
-    low = (0.0, 0.66 * k, 0.06 * k)
+    low = (0.0, 0.74 * k, 0.08 * k)
     root(b, t, t + down, low, even=False)
-    b.turn(t, t + down, 0.0, 88.0, 0.0)
-    b.trunk(t, t + down, 24.0)
+    b.turn(t, t + down, 0.0, 82.0, 0.0)
+    b.trunk(t, t + down, 30.0)
     b.look(t, t + down, -30.0)
     tiptoe(b, t + 0.5 * down, t + down, 30.0)
     t += down + b.beat(0.1)
@@ -412,8 +412,8 @@ def hand_stand_kicks(b: Score, times: int) -> Span:
     home_feet = {s: b.last(f"{s}_foot").value for s in SIDES}
     for _ in range(times):
         push, up, fall = b.beat(0.36), b.beat(0.66), b.beat(0.7)
-        root(b, t, t + push, (0.0, 0.6 * k, 0.03 * k), even=False)
-        b.turn(t, t + push, 0.0, 82.0, 0.0)
+        root(b, t, t + push, (0.0, 0.68 * k, 0.05 * k), even=False)
+        b.turn(t, t + push, 0.0, 66.0, 0.0)
         t += push
         high = b.vary(150.0, 8.0) * (1.0 if way == "together" else 1.03)
         for s in SIDES:
@@ -431,8 +431,8 @@ def hand_stand_kicks(b: Score, times: int) -> Span:
         b.trunk(t, t + up, b.vary(6.0, 3.0))
         t += up + 0.03
         root(b, t, t + fall, low, even=False)
-        b.turn(t, t + fall, 0.0, 86.0, 0.0)
-        b.trunk(t, t + fall, 24.0)
+        b.turn(t, t + fall, 0.0, 80.0, 0.0)
+        b.trunk(t, t + fall, 30.0)
         for s in SIDES:
             late = 0.0 if way == "together" or s == lead else 0.1
             yaw = b.heading + b.out(s) * who.toe_out

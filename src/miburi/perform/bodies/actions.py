@@ -41,7 +41,7 @@ def squats(b: Score, times: int) -> Span:
     low = b.way("depth", "half", "deep", "deep") == "deep" and who.age < 60
     toes_ = b.way("balance", "soles", "soles", "toes") == "toes" and who.age < 60
     lean = 0.3 if toes_ else 1.0
-    depth = min(max(b.vary(1.42 if low else 1.12, 0.12) * who.size, 0.8), 1.42) * who.thigh
+    depth = min(max(b.vary(1.42 if low else 1.12, 0.12) * who.size, 0.8), 1.36) * who.thigh
     t = b.now
     if arms in ("hips", "head"):
         ready = b.beat(0.5 if arms == "hips" else 0.9)
@@ -60,7 +60,7 @@ def squats(b: Score, times: int) -> Span:
         deep = depth * b.vary(1.0, 0.06)
         share = deep / who.thigh
         b.pelvis(t, t + down, 0.0, -deep, -0.13 * k * share * (0.5 if toes_ else 1.0))
-        b.turn(t, t + down, 0.0, 17.0 * min(share, 1.1) * lean, 0.0)
+        b.turn(t, t + down, 0.0, 17.0 * min(share, 1.0) * lean, 0.0)
         b.trunk(t, t + down, 15.0 * share * lean)
         b.look(t, t + down, -18.0 * share * lean)
         heel = b.vary(34.0, 4.0) * share**0.5 if toes_ else b.vary(23.0, 4.0) * share**1.5

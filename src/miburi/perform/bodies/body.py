@@ -125,8 +125,10 @@ def _leg(
         axis = np.cross(down, d)
         share = 1.0 / np.maximum(1.0 + np.sum(down * d, axis=1, keepdims=True), 0.05)
         swung = ahead + np.cross(axis, ahead) + share * np.cross(axis, np.cross(axis, ahead))
-        mixed = (1 - loose[rows, None]) * pole[rows] + loose[rows, None] * swung
-        pole[rows] = unit(mixed - np.sum(mixed * d, axis=1, keepdims=True) * d, (0.0, 0.0, 1.0))
+        one = pole[rows]
+        two = np.cross(d, one)  # from one pole to the other round the leg, not through it
+        angle = np.arctan2(np.sum(two * swung, axis=1), np.sum(one * swung, axis=1)) * loose[rows]
+        pole[rows] = np.cos(angle)[:, None] * one + np.sin(angle)[:, None] * two
     knee = hip + along[:, None] * direction + beside[:, None] * pole
     axis = np.cross(pole, direction)
     thigh_y = unit(hip - knee)
@@ -339,11 +341,16 @@ def pose(b: Score, t: Floats, noise: Noise, paths: Sequence[flight.Path] = ()) -
 
 
 def _between(a: Floats, b: Floats, share: Floats) -> Floats:
-    """Frames (T, 3, 3) between two, on the shortest way."""
+    """Frames (T, 3, 3) between two, on the shortest way, or on the longer one where that goes on from before."""
     rows = np.flatnonzero(share > 0)
     result = a.copy()
     if len(rows):
         step = Rotation.from_matrix(np.swapaxes(a[rows], 1, 2) @ b[rows]).as_rotvec()
+        angle = np.linalg.norm(step, axis=1)
+        for i in np.flatnonzero((angle[1:] > 0.5 * np.pi) & (np.diff(rows) == 1)) + 1:
+            long = step[i] * (1 - 2 * np.pi / angle[i])
+            if np.linalg.norm(long - step[i - 1]) < np.linalg.norm(step[i] - step[i - 1]):
+                step[i] = long
         result[rows] = a[rows] @ Rotation.from_rotvec(step * share[rows, None]).as_matrix()
     return result
 
@@ -407,10 +414,10 @@ def _upper(
     free = fore @ _turn("XYZ", wrist[:, 2], -sign * wrist[:, 1], -sign * wrist[:, 0])
     yaw = np.radians(flat[:, 1])
     world[f"{long}Hand"] = _between(free, _level(sign * np.sin(yaw), sign * np.cos(yaw)), flat[:, 0])
-    # fingers do not go through the floor
+    # fingers do not go through the floor; they begin to lie flat before they touch it
     own = world[f"{long}Hand"]
-    deep = 0.02 * who.height - (hand[:, 1] + sign * own[:, 1, 0] * people.HAND * who.height * who.arms)
-    u = np.clip(deep / (0.05 * who.height), 0.0, 1.0)
+    deep = 0.09 * who.height - (hand[:, 1] + sign * own[:, 1, 0] * people.HAND * who.height * who.arms)
+    u = np.clip(deep / (0.13 * who.height), 0.0, 1.0)
     world[f"{long}Hand"] = _between(
         own,
         _level(*(_slow(own[:, [0, 2], 0]) + 0.6 * sign * np.stack([np.sin(yaw), np.cos(yaw)], axis=1)).T),

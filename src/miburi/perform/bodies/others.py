@@ -7,6 +7,7 @@ import math
 from miburi.perform.bodies.gestures import Span
 from miburi.perform.bodies.limbs import (
     crouch,
+    hands,
     land,
     leg,
     legs,
@@ -194,13 +195,17 @@ def arm_circles(b: Score, times: int) -> Span:
             aside = 0.12 + 0.6 * max(-far, 0.0)
             value = (aside, (1.03 if high > 0 else 0.98) * high, far if far > 0 else 0.72 * far)
             span = 2 * step if number == 0 or (number == 1 and turn_) else step
-            b.move(f"{s}_hand", t, t + span, value, "arm", through=number < count, exact=True, even=True)
+            begin, hand = t, f"{s}_hand"
+            if number == 1 and turn_ and s == b.hand:  # half a turn ahead, by way of the side
+                begin += step
+                b.move(hand, t, begin, (0.98, 0.05, 0.2), "arm", through=True, exact=True, even=True)
+            b.move(hand, begin, t + span, value, "arm", through=number < count, exact=True, even=True)
         if number % 2:
             b.trunk(t, t + 2 * step, b.vary(-1.0, 1.5))
             b.pelvis(t, t + 2 * step, 0.0, b.vary(-0.006, 0.003), 0.0)
         t += 2 * step if number == 0 or (number == 1 and turn_) else step
     b.now = t
-    b.relax(t, t + b.beat(0.6))
+    hands(b, t, t + b.beat(0.6), b.hand_rest)
     b.rise(t, t + b.beat(0.5))
     end = t + 0.3
     b.now = end
@@ -354,7 +359,7 @@ def toe_touch(b: Score, times: int) -> Span:
         b.trunk(t, t + go, 58.0 * deep)
         b.look(t, t + go, -6.0)
         for s in SIDES:
-            b.reach(s, t, t + go, (b.out(s) * 0.1 * k, (0.14 + 0.5 * (1 - deep)) * k, 0.2 * k), "stage")
+            b.reach(s, t, t + go, (b.out(s) * 0.1 * k, (0.22 + 0.5 * (1 - deep)) * k, 0.2 * k), "stage")
         t += go + b.beat(0.25, 0.4)
         b.rise(t, t + back)
         b.relax(t, t + back)
