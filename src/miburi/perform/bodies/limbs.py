@@ -57,10 +57,10 @@ def plant(
 ) -> None:
     """Put a foot on the ground: its ball at a place of the world, the sole at first a little on tiptoe."""
     b.move(f"{side}_foot", start, end, place)
-    flex = b.last(f"{side}_ankle").value[1]
+    loose, flex = b.last(f"{side}_ankle").value
     b.move(f"{side}_ankle", max(start, end - _LOOSENED), end, (0.0, flex))
     sole = f"{side}_sole"
-    if b.last(f"{side}_ankle").t > b.last(sole).t:  # unseen while the foot follows its shank
+    if loose == 1.0:  # unseen while the foot follows its shank
         b.move(sole, start, start + 1e-4, (yaw, tip))
     else:
         b.move(sole, start, end, (yaw, tip))
