@@ -363,7 +363,7 @@ REAL = json.loads((Path(__file__).parent / "real.json").read_text(encoding="utf-
 # Figures that lie outside the band of real takes, and by which factor they may. In the recordings nobody flies
 # and turns over (takes of 49 and 85 do on their hands, in part at 30 frames/s, which blunts accelerations), so
 # that flips are quicker here.
-OUTSIDE = {("backflip", "high"): 1.75, ("front hand flip", "high"): 1.6}
+OUTSIDE = {("backflip", "high"): 1.6, ("front hand flip", "high"): 1.55}
 
 
 @pytest.fixture(scope="module")

@@ -72,7 +72,7 @@ def backflip(b: Score) -> Span:
     b.revolved[0] -= 360.0
     for side in SIDES:
         yaw = b.heading + b.out(side) * who.toe_out
-        plant(b, side, up + 0.54 * span, down, b.world(*b.stance(side, 1.1)), yaw)
+        plant(b, side, up + 0.62 * span, down, b.world(*b.stance(side, 1.1)), yaw)
     land(b, down, b.vary(0.28, 0.04), pitch=14.0)
     end = b.now
     home(b)
