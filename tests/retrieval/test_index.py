@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import subspace_angles
 
+import miburi.retrieval.index
 from miburi.errors import InputError
 from miburi.retrieval import Index, Ranking, dtw, measures, merge
 from miburi.retrieval.index import _draw
@@ -266,6 +267,16 @@ def test_a_query_in_the_same_place_is_nearer_to_dspm(features, segments, index):
     assert index.distances(away)[2] > index.distances(x)[2] + 0.5
 
 
+def check_first(index, query, k):
+    """The short cuts, also for more than the part of the segments that they are taken for."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(miburi.retrieval.index, "_FEW", 1)
+        for measure in SHORT_CUTS:
+            whole, some = index.rank(query, measure), index.rank(query, measure, k)
+            np.testing.assert_array_equal(some.order, whole.order[:k])
+            np.testing.assert_array_equal(some.score, whole.score[:k])
+
+
 @given(
     st.integers(0, 10_000),
     st.integers(1, 12),
@@ -292,10 +303,25 @@ def test_bounds_lose_none_of_the_first(seed, k, samples, far, width, scale):
     frames = (scale * np.concatenate(x)).astype(np.float32)
     index = Index.build([frames], segments, dims=2, samples=samples)
     query = scale * (x[rng.integers(30)] + rng.normal(0, 0.01, width))
-    for measure in SHORT_CUTS:
-        whole, some = index.rank(query, measure), index.rank(query, measure, k)
-        np.testing.assert_array_equal(some.order, whole.order[:k])
-        np.testing.assert_array_equal(some.score, whole.score[:k])
+    check_first(index, query, k)
+
+
+@given(st.integers(0, 10_000), st.integers(1, 10), st.floats(-1, 0.5), st.floats(1, 6), st.integers(3, 42))
+def test_rounding_loses_none_of_the_first(seed, k, size, ratio, width):
+    """Frames swing far along one direction, and lie as far beside it as their mean does: ties but for rounding."""
+    rng = np.random.default_rng(seed)
+    along = rng.normal(size=width) * (np.arange(width) < width - 1)
+    along *= 10.0**size / np.linalg.norm(along)
+    beside = 10.0 ** (size - ratio) * np.eye(width)[-1]
+    swing = np.repeat([-1.0, 1.0], 5)[:, None]
+    x = [
+        swing * along * rng.choice([1.0, rng.uniform(0.9, 1.1)]) + beside * rng.integers(0, 30)
+        for _ in range(30)
+    ]
+    segments = [("a", 0, 10 * i, 10 * i + 10) for i in range(30)]
+    index = Index.build([np.concatenate(x)], segments, dims=int(rng.integers(1, 4)))
+    check_first(index, x[0], k)
+    check_first(index, x[3] + 0.3 * beside, k)
 
 
 @pytest.mark.parametrize("samples", [2, 20, 50])
@@ -311,10 +337,7 @@ def test_frames_that_were_not_drawn_say_nothing(samples, k):
             frames[:5, 7] += 1.5
     index = Index.build(x, [("a", i, 0, 500) for i in range(80)], samples=samples)
     query = rng.normal(size=(80, 42)) * 1e-3
-    for measure in SHORT_CUTS:
-        whole, some = index.rank(query, measure), index.rank(query, measure, k)
-        np.testing.assert_array_equal(some.order, whole.order[:k])
-        np.testing.assert_array_equal(some.score, whole.score[:k])
+    check_first(index, query, k)
 
 
 # ---- fitting, drawing, ordering

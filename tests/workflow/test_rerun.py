@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import yaml
 from tests.workflow.conftest import Project
 
@@ -91,5 +93,15 @@ def test_the_cluster_profile_groups_rules_that_there_are(finished: Project) -> N
 
 def test_no_rule_is_a_checkpoint(finished: Project) -> None:
     """Where one finishes, Snakemake asks anew what is to do, and loses jobs whose group is half done on a cluster."""
-    for path in (finished.path / "workflow/rules").glob("*.smk"):
-        assert "\ncheckpoint " not in path.read_text(), path.name
+    for path in [finished.path / "Snakefile", *(finished.path / "workflow/rules").glob("*.smk")]:
+        assert not re.search(r"^\s*checkpoint\b", path.read_text(), re.MULTILINE), path.name
+
+
+def test_a_string_drawn_at_random_depends_on_what_models_are_trained_on(copy: Project) -> None:
+    copy.edit("config/test.yaml", "strings:\n", "strings:\n  anything: {corpus: janken, random: 5}\n")
+    target = "results/janken/synthesis/anything.h5"
+    assert copy.snakemake(target).status == 0
+    run = copy.snakemake("-n", "--quiet", "rules", "--", target)
+    assert run.status == 0 and run.planned() == {}
+    copy.edit("config/test.yaml", "strings:\n", "train: {floor: 0.02}\n\nstrings:\n")
+    assert set(copy.snakemake("-n", "--quiet", "rules", "--", target).planned()) == {"synthesize"}

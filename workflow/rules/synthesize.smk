@@ -52,8 +52,8 @@ rule synthesize:
     benchmark:
         "results/benchmarks/synthesize/{corpus}/{string}.tsv"
     resources:
-        mem_mb=megabytes(600),
-        runtime=minutes(5),
+        mem_mb=megabytes(600, 60),
+        runtime=minutes(10, 5),
     params:
         string=lambda wildcards: FLOW.string(wildcards.string),
         seed=CONFIG.seed,

@@ -74,7 +74,7 @@ def ranks(rows: Sequence[Row]) -> list[Plot]:
         for r in here
     ]
     most = max((v for row in values for v in row[1:] if isinstance(v, float)), default=1.0)
-    ticks = [t for t in (1, 3, 10, 30, 100, 300, 1000, 3000) if t <= most * 1.2]
+    ticks = [t for t in (1, 3, 10, 30, 100, 300, 1000, 3000) if t <= most * 1.1]
     title = "Mean rank of the clip that the user saw and imitated (1 is best)"
     plot = _plot(title, "mean rank (logarithmic)", values, 1.0, max(most * 1.1, 2.0), ticks, True)
     return [plot] if plot.dots else []

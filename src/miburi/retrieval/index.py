@@ -22,6 +22,7 @@ from miburi.retrieval.ranking import Ranking, ranking
 
 _PLAIN = ("mean pose", "SM(PCA)", "MSM", "DSPM(PCA)")
 _LATENT = ("SM(GP-LVM)", "DSPM(GP-LVM)")
+_FEW = 20  # beyond this part of the segments, all are ranked as fast as the first
 _MEASURES = ("DTW", *_PLAIN, *_LATENT, *(f"{name}+Jvh" for name in _PLAIN[1:]))
 
 
@@ -45,7 +46,8 @@ def _draw(x: Floats, samples: int | None, name: bytes) -> Floats:
 def _selected(n, samples, seed):  # type: ignore[no-untyped-def]
     """Some of n indices, each set of so many equally likely, ascending (Knuth's algorithm S).
 
-    In compiled code, because a generator of numpy takes longer to make than a whole query needs besides.
+    In compiled code, because numpy's generators take as long to make as the bounds of a whole query. The generator of
+    compiled functions in this thread begins anew.
     """
     np.random.seed(seed)  # noqa: NPY002 (numba has no other that starts as quickly)
     chosen, count = np.empty(samples, dtype=np.int64), 0
@@ -67,6 +69,13 @@ def _checked(x: ArrayLike, width: int | None, what: str) -> Floats:
             f"{what}, frame {int(np.argwhere(~np.isfinite(frames))[0][0])}: a number is not finite"
         )
     return frames
+
+
+def _check_names(measure: str, reduction: str) -> None:
+    if measure not in _MEASURES:
+        raise InputError(f"there is no measure {measure!r}; there are {', '.join(_MEASURES)}")
+    if reduction not in ("max", "mean"):
+        raise InputError(f"reduction is {reduction!r}, expected 'max' or 'mean'")
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,11 +241,12 @@ class Index:
         InputError
             The query is empty, too narrow or wide, or not finite; the measure is unknown; k is less than 1.
         """
+        _check_names(measure, reduction)
         if k is not None and 1 <= k < len(self):
             query = self._query(x)
             if measure == "DTW":
                 return ranking(dtw.first(self._sequences, self._drawn(query), k), k)
-            if (found := self._first(query, k, measure)) is not None:
+            if k * _FEW < len(self) and (found := self._first(query, k, measure)) is not None:
                 return ranking(found[1], k, found[0])
         return ranking(self.distances(x, measure, reduction=reduction), k)
 
@@ -267,10 +277,7 @@ class Index:
             Bhattacharyya coefficient (eqs. 3, 4). [P] does not print its rule; this one was the best of seven
             products on development queries.
         """
-        if measure not in _MEASURES:
-            raise InputError(f"there is no measure {measure!r}; there are {', '.join(_MEASURES)}")
-        if reduction not in ("max", "mean"):
-            raise InputError(f"reduction is {reduction!r}, expected 'max' or 'mean'")
+        _check_names(measure, reduction)
         query = self._query(x)
         plain = measure.removesuffix("+Jvh")
         distance: Floats
@@ -305,13 +312,13 @@ class Index:
         root = np.sqrt(jvh(query)) if with_jvh else np.zeros(query.shape[1])
         if not basis.any() or (with_jvh and not root.any()):
             return None
-        frames = self._drawn(query) if plain == "DSPM(PCA)" else query[:1]
+        frames = self._drawn(query) if plain == "DSPM(PCA)" else query[:1]  # MSM looks at no frames
         first = nearest.dspm_first if plain == "DSPM(PCA)" else nearest.msm_first
         seen = nearest.Query(
             np.ascontiguousarray(frames.T), nearest.telling(frames), mean[None], basis[None], root
         )
         found: tuple[NDArray[np.int64], Floats] = first(self._segments, seen, k)
-        return found
+        return found if len(found[0]) else None
 
     def _subspace_distances(self, query: Floats, measure: str, mean_not_max: bool) -> Floats:
         mean, basis = subspace.fit(query, self.dims)

@@ -1,11 +1,13 @@
 """The first k segments, exactly, without looking at every frame of every segment.
 
-A maximum over frames is at least its value at any one frame, and Err (eq. 1) is convex, so it is also at
+DSPM: a maximum over frames is at least its value at any one frame, and Err (eq. 1) is convex, so it is also at
 least its value at the frames' mean. So each segment's DSPM is bounded from below twice: by the segments' means and
 the query's subspace, in float32 and for many segments side by side; and, where that leaves a doubt, by a few telling
-points of each side and the other's subspace. The segments of the lowest bounds are visited first, then those
-whose bounds are not above the k-th distance found. What is visited is computed as for a whole ranking, so the first k
-are the same bits.
+points of each side and the other's subspace. MSM: √(Σ cos²) is at most what it is along the principal axes of all
+subspaces, in float32, and the product of the norms of what is left beside them.
+
+The segments of the lowest bounds are visited first, then those whose bounds are not above the k-th distance found. What
+is visited is computed as for a whole ranking, so the first k are the same bits: bounds leave room for its rounding.
 """
 
 from __future__ import annotations
@@ -23,19 +25,20 @@ from miburi.retrieval.subspace import reduced, residuals, shared_with
 
 POINTS = 3
 # What rounding in float32 may add to a square, as a share of the largest squared norm (sums of 42 products),
-# and in float64; there also to a coefficient of histograms.
+# and in float64, as a share of the squared distance of a point, and of the farthest frame, from a mean.
 _ROUNDING = 2e-5
 _ROUNDING_64 = 1e-12
 # Of this many times k segments, those of the lowest first bounds, the second bounds are looked at first.
 _OPENING = 3
 _LANES = 128  # segments that are looked at side by side
+_MANY = 4  # part of the segments; see `msm_first`
 _AXES = 24  # along which subspaces are compared first: on real bodies what is left decides about few
 
 Singles = NDArray[np.float32]
 
 
 class Segments(NamedTuple):
-    """What is compared, in float64 (see `Index`; blocks: `subspace.samples_to_subspace`), and what bounds need.
+    """What is compared (see `Index`; blocks: `subspace.samples_to_subspace`), and what bounds need.
 
     Bounds need means, subspaces and histograms in float32, segments on the last axis. Their means are of the frames
     that are compared: the mean of all need not lie in their hull.
@@ -49,6 +52,8 @@ class Segments(NamedTuple):
     offsets: NDArray[np.int64]
     points: Floats
     """(S · POINTS, D): `telling` of each segment's frames"""
+    spread: Floats
+    """(S,): largest squared distance of a segment's frame from their mean"""
     centre: Floats
     """(D,): subtracted from all frames, so that float32 spends its digits on differences"""
     size: float
@@ -58,9 +63,9 @@ class Segments(NamedTuple):
     squares: Singles
     """(S,): squared norms of the means"""
     axes: Floats
-    """(D, _AXES): principal axes of all subspaces"""
+    """(D, A): principal axes of all subspaces, `_AXES` of them or D"""
     bases: Singles
-    """(dims, _AXES, S): along these axes"""
+    """(dims, A, S): along these axes"""
     spilled: Floats
     """(S,): norm of what is left of a subspace beside the axes"""
     roots: Singles
@@ -132,6 +137,7 @@ def segments(
         blocks,
         offsets,
         points,
+        np.square(points[1::POINTS] - points[::POINTS]).sum(axis=1),
         centre,
         float(squares.max()),
         single(near.T),
@@ -179,7 +185,7 @@ def dspm_below(segments, query):  # type: ignore[no-untyped-def]
         for m in range(dims):
             rows[m, d] = query.basis[0, m, d]
             along[m] += rows[m, d] * rows[dims, d]
-    less = np.float32(own - _ROUNDING * max(segments.size, own))
+    less = np.float32(own - _ROUNDING * max(segments.size, own) - _ROUNDING_64 * segments.spread.max())
     least, dots = np.empty(s), np.empty((dims + 1, _LANES), dtype=np.float32)
     for first in range(0, s, _LANES):
         n = min(_LANES, s - first)
@@ -259,13 +265,14 @@ def _rank(basis):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _insert(value, item, values, items):  # type: ignore[no-untyped-def]
-    """Insert into sorted values and their items what is smaller than the last, which falls out."""
+def _insert(value, values):  # type: ignore[no-untyped-def]
+    """Insert into sorted values what is smaller than the last, which falls out; where it stands."""
     j = len(values) - 1
     while j > 0 and values[j - 1] > value:
-        values[j], items[j] = values[j - 1], items[j - 1]
+        values[j] = values[j - 1]
         j -= 1
-    values[j], items[j] = value, item
+    values[j] = value
+    return j
 
 
 @njit
@@ -274,18 +281,24 @@ def _lowest(values, k):  # type: ignore[no-untyped-def]
     least, where = np.full(k, np.inf), np.zeros(k, dtype=np.int64)
     for i in range(len(values)):
         if values[i] < least[-1]:
-            _insert(values[i], i, least, where)
+            place = _insert(values[i], least)
+            for j in range(k - 1, place, -1):
+                where[j] = where[j - 1]
+            where[place] = i
     return where
 
 
 @njit(fastmath=SUMS, error_model="numpy")
-def _err(points, p, means, bases, i, gap):  # type: ignore[no-untyped-def]
-    """Err² (eq. 1) of points[p] from subspace i, less what rounding may have added; gap (D,) is scratch."""
+def _err(points, p, spread, means, bases, i, gap):  # type: ignore[no-untyped-def]
+    """Err² (eq. 1) of points[p] from subspace i, less what rounding may add to it or take from that of other frames.
+
+    spread: largest squared distance of one of these frames from their mean; gap (D,): scratch.
+    """
     total = 0.0
     for d in range(len(gap)):
         gap[d] = points[p, d] - means[i, d]
         total += gap[d] * gap[d]
-    left = (1.0 - _ROUNDING_64) * total
+    left = (1.0 - _ROUNDING_64) * total - _ROUNDING_64 * spread
     for m in range(bases.shape[1]):
         along = 0.0
         for d in range(len(gap)):
@@ -295,21 +308,21 @@ def _err(points, p, means, bases, i, gap):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _closer(i, limit, points, means, bases, others, mean, basis, gap):  # type: ignore[no-untyped-def]
+def _closer(i, limit, points, spread, means, bases, others, wide, mean, basis, gap):  # type: ignore[no-untyped-def]
     """What points say of DSPM's square at least, or something beyond the limit.
 
-    points (S · POINTS, D), means (S, D), bases (S, dims, D): of the segments, of which i is looked at (unsigned, so
-    that it cannot count from the end); others (POINTS, D), mean (1, D), basis (1, dims, D): of the query. What the
-    segment's mean says is known.
+    points (S · POINTS, D), spread (S,), means (S, D), bases (S, dims, D): of the segments, of which i is looked at
+    (unsigned, so that it cannot count from the end); others (POINTS, D), wide, mean (1, D), basis (1, dims, D): of the
+    query. What the segment's mean says is known.
     """
     square, none = 0.0, np.uint64(0)
     # the query's farthest points say most
     for p in range(POINTS):
         if square <= limit:
-            square = max(square, _err(others, np.uint64(POINTS - 1 - p), means, bases, i, gap))
+            square = max(square, _err(others, np.uint64(POINTS - 1 - p), wide, means, bases, i, gap))
     for p in range(1, POINTS):
         if square <= limit:
-            square = max(square, _err(points, POINTS * i + np.uint64(p), mean, basis, none, gap))
+            square = max(square, _err(points, POINTS * i + np.uint64(p), spread[i], mean, basis, none, gap))
     return square
 
 
@@ -331,8 +344,11 @@ def dspm_first(segments, query, k):  # type: ignore[no-untyped-def]
     """DSPM (times √(1 − B), if the query has a histogram) of the first k segments and maybe more, and their places."""
     s = len(segments.squares)
     width, n = query.frames.shape
-    points, means, bases = segments.points, segments.mean, segments.basis
+    points, spread, means, bases = segments.points, segments.spread, segments.mean, segments.basis
     others, mean, basis = query.points, query.mean, query.basis
+    wide = 0.0
+    for d in range(width):
+        wide += (others[1, d] - others[0, d]) ** 2
     blocks, offsets = segments.blocks, segments.offsets
     longest = n
     for i in range(s):
@@ -342,7 +358,7 @@ def dspm_first(segments, query, k):  # type: ignore[no-untyped-def]
     least, factor = dspm_below(segments, query), factor_below(segments, query)
     _bounds(least, factor)
     found, distance, count = np.empty(s, dtype=np.int64), np.empty(s), 0
-    best, places = np.full(k, np.inf), np.zeros(k, dtype=np.int64)
+    best = np.full(k, np.inf)
     first = _lowest(least, min(_OPENING * k, s))
     closer, order = np.empty(len(first)), np.arange(0)
     # those of the lowest first bounds in the order of their second bounds, then all that are left
@@ -355,7 +371,9 @@ def dspm_first(segments, query, k):  # type: ignore[no-untyped-def]
             below = least[i]
             if below <= best[-1] and factor[i] > 0.0:
                 limit = (best[-1] / factor[i]) ** 2
-                square = _closer(np.uint64(i), limit, points, means, bases, others, mean, basis, gap)
+                square = _closer(
+                    np.uint64(i), limit, points, spread, means, bases, others, wide, mean, basis, gap
+                )
                 below = max(below, np.sqrt(square) * factor[i])
             if opening:
                 closer[j], least[i] = below, np.inf
@@ -364,33 +382,38 @@ def dspm_first(segments, query, k):  # type: ignore[no-untyped-def]
             i, below = first[order[j - len(first)]], closer[order[j - len(first)]]
         if below > best[-1] or below == np.inf:
             continue
-        exact = _factor(i, segments.root, query.root)
+        times = _factor(i, segments.root, query.root)
         residuals(query.frames, means[i], bases[i], total, scratch)
         there = reduced(total, n, False)
-        if there * exact > best[-1]:
+        if there * times > best[-1]:
             continue
         size = offsets[i + 1] - offsets[i]
         block = blocks[width * offsets[i] : width * offsets[i + 1]].reshape(width, size)
         residuals(block, mean[0], basis[0], total, scratch)
-        exact *= max(there, reduced(total, size, False))
+        exact = max(there, reduced(total, size, False)) * times
         found[count], distance[count] = i, exact
         count += 1
         if exact < best[-1]:
-            _insert(exact, i, best, places)
+            _insert(exact, best)
     return found[:count], distance[:count]
 
 
 @njit
 def msm_first(segments, query, k):  # type: ignore[no-untyped-def]
-    """MSM (times √(1 − B), if the query has a histogram) of the first k segments and maybe more, and their places."""
+    """MSM (times √(1 − B), if the query has a histogram) of the first k segments and maybe more, and their places.
+
+    Nothing, where the bounds leave so many segments that `subspace.shared` is faster.
+    """
     s = len(segments.squares)
     least, factor = msm_below(segments, query), factor_below(segments, query)
     _bounds(least, factor)
     found, distance, count = np.empty(s, dtype=np.int64), np.empty(s), 0
-    best, places = np.full(k, np.inf), np.zeros(k, dtype=np.int64)
+    best = np.full(k, np.inf)
     first, rank = _lowest(least, k), _rank(query.basis)
     for j in range(k + s):
         i = first[j] if j < k else j - k
+        if j == k and (least <= best[-1]).sum() * _MANY > s:
+            return found[:0], distance[:0]
         if least[i] <= best[-1] and least[i] < np.inf:
             exact = max(1.0 - shared_with(segments.basis[i], query.basis[0]) / rank, 0.0)
             exact *= _factor(i, segments.root, query.root)
@@ -398,5 +421,5 @@ def msm_first(segments, query, k):  # type: ignore[no-untyped-def]
             found[count], distance[count] = i, exact
             count += 1
             if exact < best[-1]:
-                _insert(exact, i, best, places)
+                _insert(exact, best)
     return found[:count], distance[:count]

@@ -75,6 +75,11 @@ def merge(rankings: Sequence[Ranking], sizes: Sequence[int], k: int | None = Non
         Number of segments of each shard.
     k
         How many to keep; None: all that are there.
+
+    Raises
+    ------
+    InputError
+        k is less than 1.
     """
     shift = np.concatenate([[0], np.cumsum(sizes)])[:-1]
     order = np.concatenate([r.order + s for r, s in zip(rankings, shift, strict=True)])

@@ -39,8 +39,8 @@ def squats(b: Score, times: int) -> Span:
     steps.stand(b, b.stance("l", 1.5), b.stance("r", 1.5), yaws=(8.0, -8.0))
     arms = b.way("squats", "ahead", "ahead", "swing", "hips", "head", "out")
     low = b.way("depth", "half", "deep", "deep") == "deep" and who.age < 60
-    toes_ = b.way("balance", "soles", "soles", "toes") == "toes" and who.age < 60
-    lean = 0.3 if toes_ else 1.0
+    on_toes = b.way("balance", "soles", "soles", "toes") == "toes" and who.age < 60
+    lean = 0.3 if on_toes else 1.0
     depth = min(max(b.vary(1.42 if low else 1.12, 0.12) * who.size, 0.8), 1.36) * who.thigh
     t = b.now
     if arms in ("hips", "head"):
@@ -59,11 +59,11 @@ def squats(b: Score, times: int) -> Span:
         down, hold, up = b.beat(0.82), b.beat(0.12, 0.4), b.beat(0.76)
         deep = depth * b.vary(1.0, 0.06)
         share = deep / who.thigh
-        b.pelvis(t, t + down, 0.0, -deep, -0.13 * k * share * (0.5 if toes_ else 1.0))
+        b.pelvis(t, t + down, 0.0, -deep, -0.13 * k * share * (0.5 if on_toes else 1.0))
         b.turn(t, t + down, 0.0, 17.0 * min(share, 1.0) * lean, 0.0)
         b.trunk(t, t + down, 15.0 * share * lean)
         b.look(t, t + down, -18.0 * share * lean)
-        heel = b.vary(34.0, 4.0) * share**0.5 if toes_ else b.vary(23.0, 4.0) * share**1.5
+        heel = b.vary(34.0, 4.0) * share**0.5 if on_toes else b.vary(23.0, 4.0) * share**1.5
         # the heels leave the floor late, when the ankles give no more, and come back first
         for side in SIDES:
             toes = b.last(f"{side}_sole").value[0]
