@@ -24,10 +24,9 @@ from miburi.retrieval.jvh import overlap_with
 from miburi.retrieval.subspace import reduced, residuals, shared_with
 
 POINTS = 3
-# What rounding in float32 may add to a square, as a share of the largest squared norm (sums of 42 products),
-# and in float64, as a share of the squared distance of a point, and of the farthest frame, from a mean.
-_ROUNDING = 2e-5
-_ROUNDING_64 = 1e-12
+# What rounding in float32 may add to a square, as a share of the largest squared norm (sums of 42 products); rounding
+# of the distances themselves, in float64, is far less.
+_ROUNDING = 5e-5
 # Of this many times k segments, those of the lowest first bounds, the second bounds are looked at first.
 _OPENING = 3
 _LANES = 128  # segments that are looked at side by side
@@ -40,8 +39,8 @@ Singles = NDArray[np.float32]
 class Segments(NamedTuple):
     """What is compared (see `Index`; blocks: `subspace.samples_to_subspace`), and what bounds need.
 
-    Bounds need means, subspaces and histograms in float32, segments on the last axis. Their means are of the frames
-    that are compared: the mean of all need not lie in their hull.
+    Bounds need points, subspaces and histograms in float32; where all segments are looked at, these are the last axis.
+    `means` are of the frames that are compared: the mean of all need not lie in their hull.
     """
 
     mean: Floats
@@ -50,18 +49,20 @@ class Segments(NamedTuple):
     """(S, D): square roots of the histograms of movement"""
     blocks: Singles
     offsets: NDArray[np.int64]
-    points: Floats
-    """(S · POINTS, D): `telling` of each segment's frames"""
-    spread: Floats
-    """(S,): largest squared distance of a segment's frame from their mean"""
     centre: Floats
-    """(D,): subtracted from all frames, so that float32 spends its digits on differences"""
+    """(D,): subtracted from all that follows, so that float32 spends its digits on differences"""
     size: float
-    """largest squared norm of a mean"""
+    """largest squared norm of what follows"""
+    points: Singles
+    """(S · POINTS, D): `telling` of each segment's frames"""
+    origins: Singles
+    """(S, D): means of the subspaces"""
+    spans: Singles
+    """(S, dims, D): their directions"""
     means: Singles
-    """(D, S)"""
+    """(D, S): means of the frames"""
     squares: Singles
-    """(S,): squared norms of the means"""
+    """(S,): squared norms of these"""
     axes: Floats
     """(D, A): principal axes of all subspaces, `_AXES` of them or D"""
     bases: Singles
@@ -119,9 +120,9 @@ def segments(
     """Prepare the segments of an index: arguments as in `Segments` and `Index`."""
     points = np.concatenate([telling(frames[a:b]) for a, b in pairwise(offsets)])
     centre = points[::POINTS].mean(axis=0)
-    near = points[::POINTS] - centre
-    squares = np.square(near).sum(axis=1)
-
+    points, origins = points - centre, mean - centre
+    near = points[::POINTS]
+    size = max(float(np.square(x).sum(axis=1).max()) for x in (points, origins))
     rows = basis.reshape(-1, basis.shape[-1])
     axes = np.ascontiguousarray(np.linalg.eigh(rows.T @ rows)[1][:, : -_AXES - 1 : -1])
     along = basis @ axes
@@ -136,12 +137,13 @@ def segments(
         root,
         blocks,
         offsets,
-        points,
-        np.square(points[1::POINTS] - points[::POINTS]).sum(axis=1),
         centre,
-        float(squares.max()),
+        size,
+        single(points),
+        single(origins),
+        single(basis),
         single(near.T),
-        single(squares),
+        single(np.square(near).sum(axis=1)),
         axes,
         single(np.moveaxis(along, 0, -1)),
         np.sqrt(np.maximum(np.square(basis).sum(axis=(1, 2)) - np.square(along).sum(axis=(1, 2)), 0.0)),
@@ -171,21 +173,44 @@ def _products(rows, columns, first, n, out):  # type: ignore[no-untyped-def]
                 line[j] += p * one[j]
 
 
+@njit
+def _singles(segments, query):  # type: ignore[no-untyped-def]
+    """The query's points (POINTS, D), origin (1, D) and span (1, dims, D) in float32, and what rounding may add."""
+    others, span = (
+        np.empty(query.points.shape, dtype=np.float32),
+        np.empty(query.basis.shape, dtype=np.float32),
+    )
+    origin, size = np.empty(query.mean.shape, dtype=np.float32), segments.size
+    for p in range(POINTS + 1):
+        square = 0.0
+        for d in range(len(segments.centre)):
+            x = (query.points[p, d] if p < POINTS else query.mean[0, d]) - segments.centre[d]
+            square += x * x
+            if p < POINTS:
+                others[p, d] = x
+            else:
+                origin[0, d] = x
+        size = max(size, square)
+    for m in range(span.shape[1]):
+        for d in range(span.shape[2]):
+            span[0, m, d] = query.basis[0, m, d]
+    return others, origin, span, np.float32(_ROUNDING * size)
+
+
 @njit(fastmath=SUMS)
-def dspm_below(segments, query):  # type: ignore[no-untyped-def]
-    """Lower bounds of DSPM, (S,): Err of the segments' means from the query's subspace."""
+def dspm_below(segments, origin, span, slack):  # type: ignore[no-untyped-def]
+    """Lower bounds of DSPM, (S,): Err of the segments' means from the query's subspace (`_singles`)."""
     width, s = segments.means.shape
-    dims = query.basis.shape[1]
+    dims = span.shape[1]
     # the query's directions, and its mean
-    rows, own = np.empty((dims + 1, width), dtype=np.float32), 0.0
-    along = np.zeros(dims, dtype=np.float32)
+    rows, along = np.empty((dims + 1, width), dtype=np.float32), np.zeros(dims, dtype=np.float32)
+    less = -slack
     for d in range(width):
-        rows[dims, d] = query.mean[0, d] - segments.centre[d]
-        own += rows[dims, d] * rows[dims, d]
+        rows[dims, d] = origin[0, d]
+        less += origin[0, d] * origin[0, d]
         for m in range(dims):
-            rows[m, d] = query.basis[0, m, d]
-            along[m] += rows[m, d] * rows[dims, d]
-    less = np.float32(own - _ROUNDING * max(segments.size, own) - _ROUNDING_64 * segments.spread.max())
+            rows[m, d] = span[0, m, d]
+            along[m] += span[0, m, d] * origin[0, d]
     least, dots = np.empty(s), np.empty((dims + 1, _LANES), dtype=np.float32)
     for first in range(0, s, _LANES):
         n = min(_LANES, s - first)
@@ -289,40 +314,36 @@ def _lowest(values, k):  # type: ignore[no-untyped-def]
 
 
 @njit(fastmath=SUMS, error_model="numpy")
-def _err(points, p, spread, means, bases, i, gap):  # type: ignore[no-untyped-def]
-    """Err² (eq. 1) of points[p] from subspace i, less what rounding may add to it or take from that of other frames.
-
-    spread: largest squared distance of one of these frames from their mean; gap (D,): scratch.
-    """
-    total = 0.0
+def _err(points, p, origins, spans, i, gap):  # type: ignore[no-untyped-def]
+    """Err² (eq. 1) of points[p] from subspace i; gap (D,) is scratch."""
+    left = np.float32(0.0)
     for d in range(len(gap)):
-        gap[d] = points[p, d] - means[i, d]
-        total += gap[d] * gap[d]
-    left = (1.0 - _ROUNDING_64) * total - _ROUNDING_64 * spread
-    for m in range(bases.shape[1]):
-        along = 0.0
+        gap[d] = points[p, d] - origins[i, d]
+        left += gap[d] * gap[d]
+    for m in range(spans.shape[1]):
+        along = np.float32(0.0)
         for d in range(len(gap)):
-            along += bases[i, m, d] * gap[d]
+            along += spans[i, m, d] * gap[d]
         left -= along * along
     return left
 
 
 @njit
-def _closer(i, limit, points, spread, means, bases, others, wide, mean, basis, gap):  # type: ignore[no-untyped-def]
-    """What points say of DSPM's square at least, or something beyond the limit.
+def _closer(i, limit, points, origins, spans, others, origin, span, gap):  # type: ignore[no-untyped-def]
+    """What points say of DSPM's square at least, but for rounding, or something beyond the limit.
 
-    points (S · POINTS, D), spread (S,), means (S, D), bases (S, dims, D): of the segments, of which i is looked at
-    (unsigned, so that it cannot count from the end); others (POINTS, D), wide, mean (1, D), basis (1, dims, D): of the
-    query. What the segment's mean says is known.
+    points (S · POINTS, D), origins (S, D), spans (S, dims, D): of the segments, of which i is looked at (unsigned, so
+    that it cannot count from the end); others (POINTS, D), origin (1, D), span (1, dims, D): of the query. What the
+    segment's mean says is known.
     """
-    square, none = 0.0, np.uint64(0)
+    square, none = np.float32(0.0), np.uint64(0)
     # the query's farthest points say most
     for p in range(POINTS):
         if square <= limit:
-            square = max(square, _err(others, np.uint64(POINTS - 1 - p), wide, means, bases, i, gap))
+            square = max(square, _err(others, np.uint64(POINTS - 1 - p), origins, spans, i, gap))
     for p in range(1, POINTS):
         if square <= limit:
-            square = max(square, _err(points, POINTS * i + np.uint64(p), spread[i], mean, basis, none, gap))
+            square = max(square, _err(points, POINTS * i + np.uint64(p), origin, span, none, gap))
     return square
 
 
@@ -344,18 +365,15 @@ def dspm_first(segments, query, k):  # type: ignore[no-untyped-def]
     """DSPM (times √(1 − B), if the query has a histogram) of the first k segments and maybe more, and their places."""
     s = len(segments.squares)
     width, n = query.frames.shape
-    points, spread, means, bases = segments.points, segments.spread, segments.mean, segments.basis
-    others, mean, basis = query.points, query.mean, query.basis
-    wide = 0.0
-    for d in range(width):
-        wide += (others[1, d] - others[0, d]) ** 2
     blocks, offsets = segments.blocks, segments.offsets
     longest = n
     for i in range(s):
         longest = max(longest, offsets[i + 1] - offsets[i])
-    total, scratch = np.empty(longest), np.empty((basis.shape[1] + 3, longest))
-    gap = np.empty(width)
-    least, factor = dspm_below(segments, query), factor_below(segments, query)
+    total, scratch = np.empty(longest), np.empty((query.basis.shape[1] + 3, longest))
+    others, origin, span, slack = _singles(segments, query)
+    points, origins, spans = segments.points, segments.origins, segments.spans
+    gap = np.empty(width, dtype=np.float32)
+    least, factor = dspm_below(segments, origin, span, slack), factor_below(segments, query)
     _bounds(least, factor)
     found, distance, count = np.empty(s, dtype=np.int64), np.empty(s), 0
     best = np.full(k, np.inf)
@@ -370,11 +388,10 @@ def dspm_first(segments, query, k):  # type: ignore[no-untyped-def]
             i = first[j] if opening else j - 2 * len(first)
             below = least[i]
             if below <= best[-1] and factor[i] > 0.0:
-                limit = (best[-1] / factor[i]) ** 2
-                square = _closer(
-                    np.uint64(i), limit, points, spread, means, bases, others, wide, mean, basis, gap
-                )
-                below = max(below, np.sqrt(square) * factor[i])
+                limit = (best[-1] / factor[i]) ** 2 + slack
+                square = _closer(np.uint64(i), limit, points, origins, spans, others, origin, span, gap)
+                if 0.0 < square - slack < np.inf:  # else it is too large for float32
+                    below = max(below, np.sqrt(square - slack) * factor[i])
             if opening:
                 closer[j], least[i] = below, np.inf
                 continue
@@ -383,13 +400,13 @@ def dspm_first(segments, query, k):  # type: ignore[no-untyped-def]
         if below > best[-1] or below == np.inf:
             continue
         times = _factor(i, segments.root, query.root)
-        residuals(query.frames, means[i], bases[i], total, scratch)
+        residuals(query.frames, segments.mean[i], segments.basis[i], total, scratch)
         there = reduced(total, n, False)
         if there * times > best[-1]:
             continue
         size = offsets[i + 1] - offsets[i]
         block = blocks[width * offsets[i] : width * offsets[i + 1]].reshape(width, size)
-        residuals(block, mean[0], basis[0], total, scratch)
+        residuals(block, query.mean[0], query.basis[0], total, scratch)
         exact = max(there, reduced(total, size, False)) * times
         found[count], distance[count] = i, exact
         count += 1

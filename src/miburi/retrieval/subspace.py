@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import lapack
+from scipy.linalg import blas, lapack
 
 from miburi.compiled import SUMS, njit
 from miburi.motion import Floats
@@ -35,7 +35,8 @@ def fit(x: ArrayLike, dims: int) -> tuple[Floats, Floats]:
     frames = np.ascontiguousarray(x, dtype=np.float64)
     mean, centred = _centred(frames)
     # the scatter matrix is small (42 × 42) whatever the segment's length
-    variance, directions = _principal(centred.T @ centred, min(dims, len(mean)))
+    scatter = blas.dsyrk(1.0, centred.T, lower=1)
+    variance, directions = _principal(scatter, min(dims, len(mean)))
     least = max(len(frames) * _STILL**2, 1e-12 * float(variance[0]))
     return mean, _oriented(directions, variance, least, len(frames) - 1, dims)
 
@@ -59,13 +60,16 @@ def _centred(frames):  # type: ignore[no-untyped-def]
 def _principal(scatter: Floats, dims: int) -> tuple[Floats, Floats]:
     """The largest eigenvalues (dims,) of a symmetric matrix (D, D) and their directions (dims, D), largest first.
 
-    LAPACK's parts of `eigh`, for the directions that are wanted only: that takes half as long.
+    Only what is not above the diagonal is read. LAPACK's parts of `eigh`, for the directions that are wanted only: that
+    takes half as long.
     """
     width = len(scatter)
     if width > 1:
         reflected, diagonal, beside, tau, _ = lapack.dsytrd(scatter, lower=1)
         wanted = 2, 0.0, 0.0, width - dims + 1, width
-        _, variance, directions, wrong = lapack.dstemr(diagonal, np.append(beside, 0.0), *wanted)
+        scratch = np.zeros(width)  # one longer than what it says, as `dstemr` wants it
+        scratch[:-1] = beside
+        _, variance, directions, wrong = lapack.dstemr(diagonal, scratch, *wanted)
         if not wrong:
             return variance[dims - 1 :: -1], _reflected(reflected, tau, directions, dims)
     variance, directions = np.linalg.eigh(scatter)
