@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from miburi.compiled import njit
 from miburi.motion import Floats
+from miburi.retrieval.ranking import insert, longest
 
 # Rows of the cost matrix that are computed before it is asked whether the segment can still matter.
 _ROWS = 64
@@ -138,17 +139,9 @@ def _rest(frames, low, high, rounding):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _longest(offsets):  # type: ignore[no-untyped-def]
-    longest = 0
-    for i in range(len(offsets) - 1):
-        longest = max(longest, offsets[i + 1] - offsets[i])
-    return longest
-
-
-@njit
 def _all(columns, rows, offsets):  # type: ignore[no-untyped-def]
-    out, longest = np.empty(len(offsets) - 1), _longest(offsets)
-    path, cost, nothing = np.empty(longest + 1), np.empty(longest * _ROWS), np.zeros(len(columns) + 1)
+    out, most = np.empty(len(offsets) - 1), longest(offsets)
+    path, cost, nothing = np.empty(most + 1), np.empty(most * _ROWS), np.zeros(len(columns) + 1)
     for i in range(len(out)):
         out[i] = np.sqrt(_square(columns, rows[offsets[i] : offsets[i + 1]], nothing, np.inf, path, cost))
     return out
@@ -156,8 +149,8 @@ def _all(columns, rows, offsets):  # type: ignore[no-untyped-def]
 
 @njit
 def _first(todo, rest, short_columns, short, columns, rows, offsets, k):  # type: ignore[no-untyped-def]
-    out, best, longest = np.full(len(offsets) - 1, np.inf), np.full(k, np.inf), _longest(offsets)
-    path, cost = np.empty(longest + 1), np.empty(longest * _ROWS)
+    out, best, most = np.full(len(offsets) - 1, np.inf), np.full(k, np.inf), longest(offsets)
+    path, cost = np.empty(most + 1), np.empty(most * _ROWS)
     asked = told = 0
     for i in todo:
         a, b = offsets[i], offsets[i + 1]
@@ -174,11 +167,7 @@ def _first(todo, rest, short_columns, short, columns, rows, offsets, k):  # type
         square = _square(columns, rows[a:b], rest[i], limit, path, cost)
         out[i] = np.sqrt(square)
         if square < limit:
-            j = k - 1
-            while j > 0 and best[j - 1] > square:
-                best[j] = best[j - 1]
-                j -= 1
-            best[j] = square
+            insert(square, best)
     return out
 
 

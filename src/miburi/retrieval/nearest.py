@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from miburi.compiled import SUMS, njit
 from miburi.motion import Floats
 from miburi.retrieval.jvh import overlap_with
+from miburi.retrieval.ranking import insert, longest
 from miburi.retrieval.subspace import reduced, residuals, shared_with
 
 POINTS = 3
@@ -290,23 +291,12 @@ def _rank(basis):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _insert(value, values):  # type: ignore[no-untyped-def]
-    """Insert into sorted values what is smaller than the last, which falls out; where it stands."""
-    j = len(values) - 1
-    while j > 0 and values[j - 1] > value:
-        values[j] = values[j - 1]
-        j -= 1
-    values[j] = value
-    return j
-
-
-@njit
 def _lowest(values, k):  # type: ignore[no-untyped-def]
     """Where the k smallest of values are, smallest first."""
     least, where = np.full(k, np.inf), np.zeros(k, dtype=np.int64)
     for i in range(len(values)):
         if values[i] < least[-1]:
-            place = _insert(values[i], least)
+            place = insert(values[i], least)
             for j in range(k - 1, place, -1):
                 where[j] = where[j - 1]
             where[place] = i
@@ -366,10 +356,8 @@ def dspm_first(segments, query, k):  # type: ignore[no-untyped-def]
     s = len(segments.squares)
     width, n = query.frames.shape
     blocks, offsets = segments.blocks, segments.offsets
-    longest = n
-    for i in range(s):
-        longest = max(longest, offsets[i + 1] - offsets[i])
-    total, scratch = np.empty(longest), np.empty((query.basis.shape[1] + 3, longest))
+    most = max(n, longest(offsets))
+    total, scratch = np.empty(most), np.empty((query.basis.shape[1] + 3, most))
     others, origin, span, slack = _singles(segments, query)
     points, origins, spans = segments.points, segments.origins, segments.spans
     gap = np.empty(width, dtype=np.float32)
@@ -411,7 +399,7 @@ def dspm_first(segments, query, k):  # type: ignore[no-untyped-def]
         found[count], distance[count] = i, exact
         count += 1
         if exact < best[-1]:
-            _insert(exact, best)
+            insert(exact, best)
     return found[:count], distance[:count]
 
 
@@ -438,5 +426,5 @@ def msm_first(segments, query, k):  # type: ignore[no-untyped-def]
             found[count], distance[count] = i, exact
             count += 1
             if exact < best[-1]:
-                _insert(exact, best)
+                insert(exact, best)
     return found[:count], distance[:count]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from miburi.compiled import njit
 from miburi.errors import InputError
 from miburi.motion import Floats
 
@@ -62,6 +63,26 @@ def ranking(score: ArrayLike, k: int | None = None, segments: ArrayLike | None =
         near = np.flatnonzero(values <= np.partition(values, k - 1)[k - 1])
         order = near[np.argsort(values[near], kind="stable")][:k]
     return Ranking(order.astype(np.int64), values[order])
+
+
+@njit
+def insert(value, values):  # type: ignore[no-untyped-def]
+    """Insert into sorted values what is smaller than the last, which falls out; where it stands."""
+    j = len(values) - 1
+    while j > 0 and values[j - 1] > value:
+        values[j] = values[j - 1]
+        j -= 1
+    values[j] = value
+    return j
+
+
+@njit
+def longest(offsets):  # type: ignore[no-untyped-def]
+    """Frames of the longest of segments that lie end to end, offsets (S + 1,)."""
+    most = 0
+    for i in range(len(offsets) - 1):
+        most = max(most, offsets[i + 1] - offsets[i])
+    return most
 
 
 def merge(rankings: Sequence[Ranking], sizes: Sequence[int], k: int | None = None) -> Ranking:

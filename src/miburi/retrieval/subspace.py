@@ -8,6 +8,7 @@ from scipy.linalg import blas, lapack
 
 from miburi.compiled import SUMS, njit
 from miburi.motion import Floats
+from miburi.retrieval.ranking import longest
 
 # A direction in which frames differ by less (root of the mean square, metres) is rounding of float32, not
 # motion.
@@ -184,10 +185,8 @@ def samples_to_subspace(blocks, offsets, mean, basis):  # type: ignore[no-untype
     of each; mean (D,) and basis (dims, D) of the query; returns (S,).
     """
     s, width, dims = len(offsets) - 1, len(mean), len(basis)
-    longest = 0
-    for i in range(s):
-        longest = max(longest, offsets[i + 1] - offsets[i])
-    total, scratch, out = np.empty(longest), np.empty((dims + 3, longest)), np.empty(s)
+    most = longest(offsets)
+    total, scratch, out = np.empty(most), np.empty((dims + 3, most)), np.empty(s)
     for i in range(s):
         n = offsets[i + 1] - offsets[i]
         block = blocks[width * offsets[i] : width * offsets[i + 1]].reshape(width, n)
