@@ -246,8 +246,8 @@ class Index:
             query = self._query(x)
             if measure == "DTW":
                 return ranking(dtw.first(self._sequences, self._drawn(query), k), k)
-            if k * _FEW < len(self) and (found := self._first(query, k, measure)) is not None:
-                return ranking(found[1], k, found[0])
+            if k * _FEW < len(self) and (first := self._first(query, k, measure)) is not None:
+                return first
         return ranking(self.distances(x, measure, reduction=reduction), k)
 
     def distances(self, x: ArrayLike, measure: str = "DSPM(PCA)", *, reduction: str = "max") -> Floats:
@@ -303,8 +303,8 @@ class Index:
         # column sums name the query: they cost nothing and differ between any two recordings
         return _draw(query, self.samples, query.sum(axis=0).tobytes() + b"%d" % self.seed)
 
-    def _first(self, query: Floats, k: int, measure: str) -> tuple[NDArray[np.int64], Floats] | None:
-        """Indices and distances of the first k and maybe more; None: there is no short cut."""
+    def _first(self, query: Floats, k: int, measure: str) -> Ranking | None:
+        """The first k; None: there is no short cut."""
         plain, with_jvh = measure.removesuffix("+Jvh"), measure.endswith("+Jvh")
         if plain not in ("DSPM(PCA)", "MSM"):
             return None
@@ -317,19 +317,23 @@ class Index:
         seen = nearest.Query(
             np.ascontiguousarray(frames.T), nearest.telling(frames), mean[None], basis[None], root
         )
-        found: tuple[NDArray[np.int64], Floats] = first(self._segments, seen, k)
-        return found if len(found[0]) else None
+        found, distance = first(self._segments, seen, k)
+        if plain == "MSM" and not len(found):
+            distance = self._msm(basis)
+            return ranking(distance * self._hellinger(query) if with_jvh else distance, k)
+        return ranking(distance, k, found)
+
+    def _msm(self, basis: Floats) -> Floats:
+        rank = int(basis.any(axis=1).sum())
+        if not rank:  # a query that stands still has no subspace: all segments are equally far
+            return np.ones(len(self))
+        distance: Floats = np.maximum(1.0 - subspace.shared(self._bases_side_by_side, basis) / rank, 0.0)
+        return distance
 
     def _subspace_distances(self, query: Floats, measure: str, mean_not_max: bool) -> Floats:
         mean, basis = subspace.fit(query, self.dims)
         if measure == "MSM":
-            rank = int(basis.any(axis=1).sum())
-            # a query that stands still has no subspace: all segments are equally far
-            return (
-                np.maximum(1.0 - subspace.shared(self._bases_side_by_side, basis) / rank, 0.0)
-                if rank
-                else np.ones(len(self))
-            )
+            return self._msm(basis)
         block = np.ascontiguousarray(self._drawn(query).T)
         to: Floats = subspace.frames_to_subspaces(
             block, self.mean, self.basis, mean_not_max and measure == "SM(PCA)"
